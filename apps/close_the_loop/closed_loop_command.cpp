@@ -30,7 +30,7 @@
 namespace stillhand::close_the_loop {
 namespace {
 
-struct Words {
+struct Arguments {
   lab::LabOptions lab;  ///< protocol, folder, effect; the rest with --live
   bool live = false;
   bool off_catalogue = false;
@@ -43,37 +43,37 @@ struct Words {
 constexpr double kUsualSteps = 15.0;
 constexpr double kLoopShare = 0.6;
 
-unsigned threads_of(const Words& words) {
-  return words.threads > 0 ? words.threads : runtime::core_count();
+unsigned threads_of(const Arguments& arguments) {
+  return arguments.threads > 0 ? arguments.threads : runtime::core_count();
 }
 
 DeclaredDrive declared_drive(const rig::RigConfig& rig) {
   return {rig.stick, kControlPeriod_s + rig.motor.lag_s};
 }
 
-session::CoreConfigs configs_of(const Words& words) {
+session::CoreConfigs configs_of(const Arguments& arguments) {
   session::CoreConfigs configs;
-  if (words.lab.subject == 0) return configs;
+  if (arguments.lab.subject == 0) return configs;
   const population::Subject subject =
-      population::draw_subject({}, words.lab.protocol.seed, words.lab.subject - 1);
+      population::draw_subject({}, arguments.lab.protocol.seed, arguments.lab.subject - 1);
   configs.rig.body = subject.body;
   configs.human_operator = subject.who;
   return configs;
 }
 
 // What both modes need besides the session.
-LoopRecord new_record(const Words& words) {
+LoopRecord new_record(const Arguments& arguments) {
   LoopRecord record;
   record.command_line = report::command_line();
-  record.undeclared_effect = words.lab.undeclared_effect;
-  record.live = words.live;
-  record.subject = words.lab.subject;
-  record.options.protocol = words.lab.protocol;
+  record.undeclared_effect = arguments.lab.undeclared_effect;
+  record.live = arguments.live;
+  record.subject = arguments.lab.subject;
+  record.options.protocol = arguments.lab.protocol;
   record.options.declared = declared_drive(session::CoreConfigs{}.rig);
   record.options.hand = average_hand();
-  record.options.diagnose = words.recorded.diagnose;
-  record.options.diagnose.for_each = [threads = threads_of(words)](std::size_t count,
-                                                                   const auto& job) {
+  record.options.diagnose = arguments.recorded.diagnose;
+  record.options.diagnose.for_each = [threads = threads_of(arguments)](std::size_t count,
+                                                                       const auto& job) {
     runtime::run_jobs(count, threads, job);
   };
   return record;
@@ -89,16 +89,17 @@ void write_files(const LoopRecord& record, std::uint32_t rig, report::StagedFold
   loop_page(record, drawings).write(folder.path() / "report.html");
 }
 
-void run_in_process(const Words& words) {
+void run_in_process(const Arguments& arguments) {
   runtime::Stop stop;
   // The recording of another session must not be removed.
-  if (std::filesystem::exists(words.lab.out / "session.mcap")) {
-    throw ConfigError("--out", words.lab.out.string() + ", which holds the recording of a session",
+  if (std::filesystem::exists(arguments.lab.out / "session.mcap")) {
+    throw ConfigError("--out",
+                      arguments.lab.out.string() + ", which holds the recording of a session",
                       "a folder without one");
   }
-  report::StagedFolder folder(words.lab.out);
+  report::StagedFolder folder(arguments.lab.out);
   report::require_gnuplot();
-  LoopRecord record = new_record(words);
+  LoopRecord record = new_record(arguments);
   report::ProgressLine progress;
   int steps = 0;
   record.options.progress = [&](const std::string& step) {
@@ -106,44 +107,44 @@ void run_in_process(const Words& words) {
     return !stop.requested();
   };
   const SimulatedRig rig{
-      configs_of(words), words.lab.undeclared_effect,
-      words.off_catalogue ? rig::EffectSource::kOutsideKinds : rig::EffectSource::kKinds};
-  InProcessSession session(rig, words.lab.protocol.seed);
+      configs_of(arguments), arguments.lab.undeclared_effect,
+      arguments.off_catalogue ? rig::EffectSource::kOutsideKinds : rig::EffectSource::kKinds};
+  InProcessSession session(rig, arguments.lab.protocol.seed);
   if (record.undeclared_effect != 0) {
     std::printf("undeclared effect sealed, sha256 %.64s\n", session.commitment().c_str());
     folder.write(rig::kCommitmentFile, session.commitment());
   }
   record.result = close_loop(session, record.options);
   folder.write(kVerdictFile, verdict_json(record.result.verdict()));
-  RepeatOptions repeats{words.repeats, threads_of(words), {}};
+  RepeatOptions repeats{arguments.repeats, threads_of(arguments), {}};
   repeats.progress = [&](double share) {
     progress.show("repeats", kLoopShare + (1.0 - kLoopShare) * share);
     return !stop.requested();
   };
-  record.conditions = run_repeats(record.result, words.lab.protocol, rig, repeats);
+  record.conditions = run_repeats(record.result, arguments.lab.protocol, rig, repeats);
   record.decision = decide(record.conditions, record.result);
   progress.finish();
   if (record.undeclared_effect != 0) {
     rig::open_effect(folder.path(), session.open_effect(), kVerdictFile);
     record.truth = truth_of(session.open_effect());
   }
-  write_files(record, words.lab.rig, folder);
+  write_files(record, arguments.lab.rig, folder);
   folder.publish(every_name());
   print_result(record);
 }
 
-void run_live(const Words& words) {
+void run_live(const Arguments& arguments) {
   runtime::Stop stop;
   report::require_gnuplot();
-  const std::filesystem::path& out = words.lab.out;
+  const std::filesystem::path& out = arguments.lab.out;
   const std::filesystem::path recording = out / "session.mcap";
-  LoopRecord record = new_record(words);
+  LoopRecord record = new_record(arguments);
   record.options.progress = [&](const std::string& /*step*/) { return !stop.requested(); };
   record.options.aside = [](const std::function<void()>& work) {
     const runtime::OrdinaryWhile ordinary;
     work();
   };
-  lab::LiveSession live = lab::run_session(words.lab, stop, [&](lab::LiveTrials& trials) {
+  lab::LiveSession live = lab::run_session(arguments.lab, stop, [&](lab::LiveTrials& trials) {
     LiveTrialSession session(trials, recording);
     record.result = close_loop(session, record.options);
   });
@@ -158,35 +159,35 @@ void run_live(const Words& words) {
     throw std::runtime_error(status.text);
   }
   if (!live.sealed.empty()) {
-    lab::open_undeclared_effect(words.lab, live, kVerdictFile);
+    lab::open_undeclared_effect(arguments.lab, live, kVerdictFile);
     record.truth = truth_of(recording::read_file((out / rig::kSealedFile).string()));
   }
   live.folder.reset();
   report::StagedFolder folder(out);
-  write_files(record, words.lab.rig, folder);
+  write_files(record, arguments.lab.rig, folder);
   folder.publish({});
   print_result(record);
 }
 
 // Effect, subject and repeats of a run in one process.
-void add_comparison_options(CLI::App& verb, const std::shared_ptr<Words>& words,
+void add_comparison_options(CLI::App& verb, const std::shared_ptr<Arguments>& arguments,
                             CLI::Option* effect, CLI::Option* live) {
-  verb.add_flag("--off-catalogue", words->off_catalogue,
+  verb.add_flag("--off-catalogue", arguments->off_catalogue,
                 "the effect is one that no kind of `stillhand diagnose` describes")
       ->needs(effect)
       ->excludes(live);
-  verb.add_option("--repeats", words->repeats,
+  verb.add_option("--repeats", arguments->repeats,
                   "trials of each condition, with other draws of target, motion and remnant; with "
                   "--live one")
       ->check(CLI::Range(1, 1000))
       ->excludes(live)
       ->capture_default_str();
   verb.add_option(
-          "--subject", words->lab.subject,
+          "--subject", arguments->lab.subject,
           "number of the subject that `stillhand study --seed` draws; 0: the one in the settings")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
-  verb.add_option("--threads", words->threads,
+  verb.add_option("--threads", arguments->threads,
                   "number of threads; the results do not depend on it; 0: one per core")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
@@ -195,8 +196,8 @@ void add_comparison_options(CLI::App& verb, const std::shared_ptr<Words>& words,
 }  // namespace
 
 void add_closed_loop_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
-  lab::LabOptions& lab = words->lab;
+  auto arguments = std::make_shared<Arguments>();
+  lab::LabOptions& lab = arguments->lab;
   lab::set_places(lab);
   lab.headless = true;
   lab.subject = 1;
@@ -228,27 +229,29 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   CLI::Option* identify = verb->add_option("--identify-seconds", lab.protocol.identify_s,
                                            "length of the pegged trial [s]; the paper's is 120")
                               ->capture_default_str();
-  CLI::Option* live = verb->add_flag(
-      "--live", words->live, "over DDS, with every process, in real time; the recording is kept");
+  CLI::Option* live =
+      verb->add_flag("--live", arguments->live,
+                     "over DDS, with every process, in real time; the recording is kept");
   verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")
       ->needs(live)
       ->capture_default_str();
   verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
       ->needs(live)
       ->capture_default_str();
-  add_comparison_options(*verb, words, effect, live);
-  diagnose::add_diagnose_options(*verb, words->recorded.diagnose);
-  words->recorded.declared = declared_drive(session::CoreConfigs{}.rig);
-  add_recorded_options(*verb, words->recorded,
+  add_comparison_options(*verb, arguments, effect, live);
+  diagnose::add_diagnose_options(*verb, arguments->recorded.diagnose);
+  arguments->recorded.declared = declared_drive(session::CoreConfigs{}.rig);
+  add_recorded_options(*verb, arguments->recorded,
                        {effect, seed, trial, identify, live, verb->get_option("--repeats"),
                         verb->get_option("--subject")});
-  verb->callback([words, &status] {
-    if (!words->recorded.pegged.empty()) {
-      run_recorded(words->recorded, words->lab.out, words->lab.rig, threads_of(*words));
+  verb->callback([arguments, &status] {
+    if (!arguments->recorded.pegged.empty()) {
+      run_recorded(arguments->recorded, arguments->lab.out, arguments->lab.rig,
+                   threads_of(*arguments));
     } else {
-      words->live ? run_live(*words) : run_in_process(*words);
+      arguments->live ? run_live(*arguments) : run_in_process(*arguments);
     }
-    std::printf("report in %s\n", words->lab.out.string().c_str());
+    std::printf("report in %s\n", arguments->lab.out.string().c_str());
     status = 0;
   });
 }

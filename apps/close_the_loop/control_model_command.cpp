@@ -31,7 +31,7 @@
 namespace stillhand::close_the_loop {
 namespace {
 
-struct ControlModelWords {
+struct ControlModelArguments {
   std::filesystem::path model;
   std::string recording;
   measurement::ReadOptions read;
@@ -60,47 +60,48 @@ std::string summary_of(const ConvertedModel& control) {
 
 // The ranges of the tables, and the body of a model without what is left alone, come from it.
 // @throws stillhand::ConfigError for a recording that the model does not name
-void require_diagnosed(const ControlModelWords& words, const std::string& model) {
+void require_diagnosed(const ControlModelArguments& arguments, const std::string& model) {
   const auto origin = report::provenance_in(model);
-  if (!origin || !std::filesystem::is_regular_file(words.recording)) return;
-  const std::string digest = rig::sha256_of_file(words.recording);
+  if (!origin || !std::filesystem::is_regular_file(arguments.recording)) return;
+  const std::string digest = rig::sha256_of_file(arguments.recording);
   std::string names;
   for (const report::SourceFile& source : origin->sources) {
     if (source.sha256.empty() || source.sha256 == digest) return;
     names += (names.empty() ? "'" : ", '") + source.name + "'";
   }
   if (names.empty()) return;
-  throw ConfigError(words.recording,
-                    "another recording than " + words.model.string() + " was fitted to",
+  throw ConfigError(arguments.recording,
+                    "another recording than " + arguments.model.string() + " was fitted to",
                     "the one that was diagnosed: " + names);
 }
 
-int run(const ControlModelWords& words) {
-  report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
-                            {words.model, words.recording});
-  const std::string text = recording::read_file(words.model.string());
+int run(const ControlModelArguments& arguments) {
+  report::ResultFiles files({{"--save", arguments.save}, {"--json", arguments.json}},
+                            {arguments.model, arguments.recording});
+  const std::string text = recording::read_file(arguments.model.string());
   const diagnosis::CarriedModel carried =
-      diagnosis::parse_carried_model(text, words.model.string());
-  require_diagnosed(words, text);
+      diagnosis::parse_carried_model(text, arguments.model.string());
+  require_diagnosed(arguments, text);
   const diagnosis::Model& model = carried.in_session;
-  const diagnosis::Measurement whole = measurement::read_measurement(words.recording, words.read);
+  const diagnosis::Measurement whole =
+      measurement::read_measurement(arguments.recording, arguments.read);
   const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);
   const diagnosis::Signals signals(factor == 1 ? whole : diagnosis::decimated(whole, factor),
                                    model.inputs, model.output);
   ControlOptions options;
-  options.lead_s = 1e-3 * words.lead_ms;
+  options.lead_s = 1e-3 * arguments.lead_ms;
   ConvertedModel control = to_control_model(carried, signals, options);
-  if (!words.as_it_is) control.model.adapts = average_hand();
+  if (!arguments.as_it_is) control.model.adapts = average_hand();
   cancellation::require_sound(
       control.model,
-      settings::load<cancellation::Config>(words.config / "cancellation.yaml", "cancellation"),
-      words.model.string());
-  files.set("--save", cancellation::control_model_json(control.model, words.rig));
-  if (!words.json.empty()) files.set_json("--json", summary_of(control));
+      settings::load<cancellation::Config>(arguments.config / "cancellation.yaml", "cancellation"),
+      arguments.model.string());
+  files.set("--save", cancellation::control_model_json(control.model, arguments.rig));
+  if (!arguments.json.empty()) files.set_json("--json", summary_of(control));
   files.publish();
   std::printf("%s at 1 kHz, off by at most %.2g %% from %g to %g Hz, in %s\n",
-              words.model.string().c_str(), 100.0 * control.conversion_error, options.low_hz,
-              options.high_hz, words.save.string().c_str());
+              arguments.model.string().c_str(), 100.0 * control.conversion_error, options.low_hz,
+              options.high_hz, arguments.save.string().c_str());
   for (const Treatment& each : control.treatments) {
     std::printf("%s: %s: %s%s\n", each.kind.c_str(), each.cancelled ? "cancelled" : "left alone",
                 each.how.c_str(), difference_of(each).c_str());
@@ -111,10 +112,10 @@ int run(const ControlModelWords& words) {
 }  // namespace
 
 void add_control_model_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<ControlModelWords>();
+  auto arguments = std::make_shared<ControlModelArguments>();
   lab::LabOptions places;
   lab::set_places(places);
-  words->config = places.config;
+  arguments->config = places.config;
   CLI::App* verb = cli.add_subcommand(
       "control-model",
       "Converts a model that `stillhand diagnose --save` wrote to the canceller's 1 kHz, for\n"
@@ -125,29 +126,29 @@ void add_control_model_command(CLI::App& cli, int& status) {
       "REC is the recording that was diagnosed: its ranges are those of the model's tables.\n"
       "Example: stillhand control-model model.json run1/session.mcap --trial I --save "
       "control.json");
-  verb->add_option("MODEL", words->model, "model file")->required();
-  verb->add_option("REC", words->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
+  verb->add_option("MODEL", arguments->model, "model file")->required();
+  verb->add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
       ->required();
-  verb->add_option("--trial", words->read.trial,
+  verb->add_option("--trial", arguments->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(*verb, words->read);
-  verb->add_option("--save", words->save, "file of the control model")
+  measurement::add_read_options(*verb, arguments->read);
+  verb->add_option("--save", arguments->save, "file of the control model")
       ->required()
       ->check(settings::check_name);
-  verb->add_option("--json", words->json,
+  verb->add_option("--json", arguments->json,
                    "file of what becomes of each effect, with the difference of its force")
       ->check(settings::check_name);
-  verb->add_option("--rig", words->rig, "number of the rig that the model is for")
+  verb->add_option("--rig", arguments->rig, "number of the rig that the model is for")
       ->capture_default_str();
-  verb->add_option("--lead-ms", words->lead_ms,
+  verb->add_option("--lead-ms", arguments->lead_ms,
                    "delay of the motor [ms]: the prediction comes as much sooner")
       ->check(settings::number_between(0.0, 100.0))
       ->capture_default_str();
-  verb->add_flag("--as-it-is", words->as_it_is, "gain and phase do not adapt while it runs");
-  verb->add_option("--config", words->config,
+  verb->add_flag("--as-it-is", arguments->as_it_is, "gain and phase do not adapt while it runs");
+  verb->add_option("--config", arguments->config,
                    "folder with the settings of each service: the canceller's bounds")
       ->capture_default_str();
-  verb->callback([words, &status] { status = run(*words); });
+  verb->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::close_the_loop

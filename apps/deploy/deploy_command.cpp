@@ -22,7 +22,7 @@
 namespace stillhand::deploy {
 namespace {
 
-struct Words {
+struct Arguments {
   std::filesystem::path inventory;
   std::filesystem::path profiles;  ///< qos/profiles.xml
   std::filesystem::path devices;   ///< devices.yaml; empty: no rig of devices
@@ -31,12 +31,13 @@ struct Words {
   std::string json;
 };
 
-int run_generate(const Words& words) {
-  const Inventory inventory = read_inventory(words.inventory);
-  const LabProfiles profiles(words.profiles);
-  const auto left_over = generate(inventory, profiles, words.out);
+int run_generate(const Arguments& arguments) {
+  const Inventory inventory = read_inventory(arguments.inventory);
+  const LabProfiles profiles(arguments.profiles);
+  const auto left_over = generate(inventory, profiles, arguments.out);
   for (const Host& host : inventory.hosts) {
-    fmt::print("{}: {}\n", (std::filesystem::path(words.out) / host.name).string(), host.address);
+    fmt::print("{}: {}\n", (std::filesystem::path(arguments.out) / host.name).string(),
+               host.address);
   }
   for (const auto& folder : left_over) {
     fmt::print("{}: from an earlier run; lab {} has no such host now\n", folder.string(),
@@ -89,15 +90,16 @@ std::string json_of(const Inventory& inventory, const Host& host,
   return json.dump(2) + "\n";
 }
 
-int run_check(const Words& words) {
-  report::ResultFiles files({{"--json", words.json}}, {words.inventory, words.profiles});
-  const Inventory inventory = read_inventory(words.inventory);
-  const Host& host = this_host(inventory, words.host);
-  const LabProfiles profiles(words.profiles);
+int run_check(const Arguments& arguments) {
+  report::ResultFiles files({{"--json", arguments.json}},
+                            {arguments.inventory, arguments.profiles});
+  const Inventory inventory = read_inventory(arguments.inventory);
+  const Host& host = this_host(inventory, arguments.host);
+  const LabProfiles profiles(arguments.profiles);
   std::vector<Finding> findings = check_machine(inventory, host, profiles.buffers());
   std::ranges::move(check_real_time_kernel(), std::back_inserter(findings));
-  if (!words.devices.empty()) {
-    std::ranges::move(check_devices(words.devices), std::back_inserter(findings));
+  if (!arguments.devices.empty()) {
+    std::ranges::move(check_devices(arguments.devices), std::back_inserter(findings));
   }
   const bool all_good = std::ranges::none_of(
       findings, [](const Finding& each) { return each.state == State::kWrong; });
@@ -115,8 +117,8 @@ int run_check(const Words& words) {
 }  // namespace
 
 void add_deploy_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
-  words->profiles = runtime::shipped("qos/profiles.xml");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "deploy",
       "Sets up a lab of several machines from one inventory (deploy/inventory.example.yaml).\n"
@@ -124,9 +126,10 @@ void add_deploy_command(CLI::App& cli, int& status) {
       "         stillhand deploy check lab.yaml          (on each machine)");
   verb->require_subcommand(1);
   const auto common = [&](CLI::App* sub) {
-    sub->add_option("inventory", words->inventory, "YAML file with the services of each machine")
+    sub->add_option("inventory", arguments->inventory,
+                    "YAML file with the services of each machine")
         ->required();
-    sub->add_option("--profiles", words->profiles,
+    sub->add_option("--profiles", arguments->profiles,
                     "QoS profiles from which the lab's profiles are made")
         ->capture_default_str();
   };
@@ -136,10 +139,10 @@ void add_deploy_command(CLI::App& cli, int& status) {
       "units, stillhand.target, firewall.nft, sysctl.conf. It writes all files or none, and the\n"
       "same inventory gives the same files. deploy/README.md says where each file belongs.");
   common(make);
-  make->add_option("--out", words->out, "folder for the machines' folders")
+  make->add_option("--out", arguments->out, "folder for the machines' folders")
       ->required()
       ->check(settings::check_name);
-  make->callback([words, &status] { status = run_generate(*words); });
+  make->callback([arguments, &status] { status = run_generate(*arguments); });
   CLI::App* check = verb->add_subcommand(
       "check",
       "Checks this machine as a host of the lab: address, clock, rights, buffers, ports,\n"
@@ -147,15 +150,15 @@ void add_deploy_command(CLI::App& cli, int& status) {
       "with the remedy if something is\n"
       "wrong. Exit status: 0 nothing is wrong, 1 something is wrong, 2 the inventory is refused.");
   common(check);
-  check->add_option("--host", words->host,
+  check->add_option("--host", arguments->host,
                     "this machine's host; by default the one whose address it has");
   check
-      ->add_option("--devices", words->devices,
+      ->add_option("--devices", arguments->devices,
                    "devices.yaml of a rig of devices: also check the ports and interfaces it names")
       ->check(settings::check_name);
-  check->add_option("--json", words->json, "also write the results to this file")
+  check->add_option("--json", arguments->json, "also write the results to this file")
       ->check(settings::check_name);
-  check->callback([words, &status] { status = run_check(*words); });
+  check->callback([arguments, &status] { status = run_check(*arguments); });
 }
 
 }  // namespace stillhand::deploy

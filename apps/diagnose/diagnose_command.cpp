@@ -28,7 +28,7 @@
 namespace stillhand::diagnose {
 namespace {
 
-struct Words {
+struct Arguments {
   std::vector<std::string> recordings;
   measurement::ReadOptions read;
   diagnosis::DiagnoseOptions options;
@@ -50,30 +50,30 @@ void check_different(const std::vector<std::string>& recordings) {
   }
 }
 
-diagnosis::Measurement read_all(const Words& words) {
+diagnosis::Measurement read_all(const Arguments& arguments) {
   std::vector<diagnosis::Measurement> parts;
-  for (const std::string& path : words.recordings) {
-    parts.push_back(measurement::read_measurement(path, words.read));
+  for (const std::string& path : arguments.recordings) {
+    parts.push_back(measurement::read_measurement(path, arguments.read));
   }
   return parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
 }
 
-int run(const Words& words) {
+int run(const Arguments& arguments) {
   runtime::Stop stop;
-  check_different(words.recordings);
-  report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
-                            {words.recordings.begin(), words.recordings.end()});
+  check_different(arguments.recordings);
+  report::ResultFiles files({{"--save", arguments.save}, {"--json", arguments.json}},
+                            {arguments.recordings.begin(), arguments.recordings.end()});
   std::optional<report::StagedFolder> folder;
-  if (!words.report.empty()) {
+  if (!arguments.report.empty()) {
     report::require_gnuplot();
-    folder.emplace(words.report, "--report");
+    folder.emplace(arguments.report, "--report");
   }
   const runtime::EndAfterStop end(stop, [&] {
     if (folder) folder->clear_away();
   });
-  const diagnosis::Measurement measurement = read_all(words);
+  const diagnosis::Measurement measurement = read_all(arguments);
   report::ProgressLine progress;
-  diagnosis::DiagnoseOptions options = words.options;
+  diagnosis::DiagnoseOptions options = arguments.options;
   options.for_each = runtime::on_all_cores;
   double done = 0.0;
   options.progress = [&](const std::string& step) {
@@ -88,24 +88,24 @@ int run(const Words& words) {
                    diagnosis::model_json(result.model, result.carried, result.baseline.model));
   }
   if (files.wants("--json")) files.set_json("--json", diagnosis_json(result));
-  if (folder) write_report(result, measurement, words.recordings, *folder);
+  if (folder) write_report(result, measurement, arguments.recordings, *folder);
   files.publish();
   std::fputs(diagnosis_table(result).c_str(), stdout);
-  if (folder) std::printf("report in %s\n", words.report.string().c_str());
-  report::say_next(words.report.empty()
+  if (folder) std::printf("report in %s\n", arguments.report.string().c_str());
+  report::say_next(arguments.report.empty()
                        ? "the same command with --report DIR draws what was found"
-                       : fmt::format("open {}", (words.report / "index.html").string()));
-  report::say_next(words.save.empty()
+                       : fmt::format("open {}", (arguments.report / "index.html").string()));
+  report::say_next(arguments.save.empty()
                        ? "--save MODEL keeps the model, for `stillhand predict`"
                        : fmt::format("stillhand predict {} ANOTHER_RECORDING --out predicted.csv",
-                                     words.save.string()));
+                                     arguments.save.string()));
   return 0;
 }
 
 }  // namespace
 
 void add_diagnose_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
+  auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = cli.add_subcommand(
       "diagnose",
       "Finds what the model lacks. Fits a linear model to the recording, takes the residual of "
@@ -117,26 +117,27 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       "columns 'name [unit]' and 't [s]', or with others and --map. Several recordings of one rig\n"
       "are diagnosed together.\n"
       "Example: stillhand diagnose ride.csv --input a_y --output f --json out.json --report DIR");
-  verb->add_option("REC", words->recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")
+  verb->add_option("REC", arguments->recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")
       ->required();
-  verb->add_option("--input", words->options.inputs,
+  verb->add_option("--input", arguments->options.inputs,
                    "inputs of the model: channel(s), comma-separated")
       ->delimiter(',')
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->capture_default_str();
-  verb->add_option("--output", words->options.output, "channel that the model predicts")
+  verb->add_option("--output", arguments->options.output, "channel that the model predicts")
       ->capture_default_str();
-  add_diagnose_options(*verb, words->options);
-  verb->add_option("--trial", words->read.trial,
+  add_diagnose_options(*verb, arguments->options);
+  verb->add_option("--trial", arguments->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(*verb, words->read);
-  verb->add_option("--save", words->save, "file for the diagnosed model, for `stillhand predict`")
+  measurement::add_read_options(*verb, arguments->read);
+  verb->add_option("--save", arguments->save,
+                   "file for the diagnosed model, for `stillhand predict`")
       ->check(settings::check_name);
-  verb->add_option("--json", words->json, "file for the verdict")->check(settings::check_name);
-  verb->add_option("--report", words->report, "folder for a page with figures")
+  verb->add_option("--json", arguments->json, "file for the verdict")->check(settings::check_name);
+  verb->add_option("--report", arguments->report, "folder for a page with figures")
       ->check(settings::check_name);
-  verb->callback([words, &status] { status = run(*words); });
+  verb->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::diagnose

@@ -21,7 +21,7 @@
 namespace stillhand::identify {
 namespace {
 
-struct Words {
+struct Arguments {
   bool admittance = false;
   double lever_m = 0.1;  // of the paper's stick
   std::filesystem::path picture;
@@ -33,18 +33,18 @@ struct Words {
   std::filesystem::path json;
 };
 
-int run_admittance(const Words& words) {
-  if (!words.save.empty()) {
+int run_admittance(const Arguments& arguments) {
+  if (!arguments.save.empty()) {
     throw ConfigError("--save", "it with --admittance", "it without: a model for the canceller");
   }
-  if (words.held.empty() != words.swapped.empty()) {
-    throw ConfigError(words.held.empty() ? "--held" : "--swapped", "nothing",
+  if (arguments.held.empty() != arguments.swapped.empty()) {
+    throw ConfigError(arguments.held.empty() ? "--held" : "--swapped", "nothing",
                       "both or neither: their relation needs three sessions");
   }
-  report::ResultFiles files({{"--json", words.json}, {"--picture", words.picture}},
-                            {words.recording, words.held, words.swapped});
-  const AdmittanceResult result =
-      identify_admittance({words.recording, words.held, words.swapped}, words.lever_m);
+  report::ResultFiles files({{"--json", arguments.json}, {"--picture", arguments.picture}},
+                            {arguments.recording, arguments.held, arguments.swapped});
+  const AdmittanceResult result = identify_admittance(
+      {arguments.recording, arguments.held, arguments.swapped}, arguments.lever_m);
   if (files.wants("--json")) files.set_json("--json", result_json(result));
   if (files.wants("--picture")) {
     const std::vector<report::Figure> figures{figure(result)};
@@ -55,18 +55,18 @@ int run_admittance(const Words& words) {
   return 0;
 }
 
-int run(const Words& words) {
-  if (words.admittance) return run_admittance(words);
-  if (!words.picture.empty() || !words.held.empty() || !words.swapped.empty()) {
-    throw ConfigError(!words.picture.empty() ? "--picture"
-                      : !words.held.empty()  ? "--held"
-                                             : "--swapped",
+int run(const Arguments& arguments) {
+  if (arguments.admittance) return run_admittance(arguments);
+  if (!arguments.picture.empty() || !arguments.held.empty() || !arguments.swapped.empty()) {
+    throw ConfigError(!arguments.picture.empty() ? "--picture"
+                      : !arguments.held.empty()  ? "--held"
+                                                 : "--swapped",
                       "it without --admittance", "it with --admittance");
   }
-  report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
-                            {words.recording, words.read.map_file});
-  const IdentifyResult result =
-      identify(measurement::read_measurement(words.recording, words.read), words.identify);
+  report::ResultFiles files({{"--save", arguments.save}, {"--json", arguments.json}},
+                            {arguments.recording, arguments.read.map_file});
+  const IdentifyResult result = identify(
+      measurement::read_measurement(arguments.recording, arguments.read), arguments.identify);
   if (files.wants("--save")) {
     if (!result.unusable.empty()) {
       throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",
@@ -77,14 +77,14 @@ int run(const Words& words) {
   if (files.wants("--json")) files.set_json("--json", result_json(result));
   files.publish();
   std::fputs(result_table(result).c_str(), stdout);
-  report::say_next("stillhand diagnose " + words.recording + " says what this model lacks");
+  report::say_next("stillhand diagnose " + arguments.recording + " says what this model lacks");
   return 0;
 }
 
 }  // namespace
 
 void add_identify_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
+  auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = cli.add_subcommand(
       "identify",
       "Fits the paper's model to one recording: a difference model by least squares at 50 Hz.\n"
@@ -97,37 +97,38 @@ void add_identify_command(CLI::App& cli, int& status) {
       "not at all.\n"
       "Examples: stillhand identify demo/session.mcap --save model.json --json out.json\n"
       "          stillhand identify ride.csv --map 'time=t [s]' 'acc=a_y [m/s^2]' 'force=f [N]'");
-  verb->add_option("REC", words->recording, "recording")->required();
-  verb->add_option("--order", words->identify.config.order, "order of the model, 1 to 12")
+  verb->add_option("REC", arguments->recording, "recording")->required();
+  verb->add_option("--order", arguments->identify.config.order, "order of the model, 1 to 12")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
-  verb->add_flag("--refine", words->identify.config.refine,
+  verb->add_flag("--refine", arguments->identify.config.refine,
                  "refine the least squares on its free-run error; also done if it is unstable");
-  verb->add_option("--input", words->identify.input, "input channel of the model")
+  verb->add_option("--input", arguments->identify.input, "input channel of the model")
       ->capture_default_str();
-  verb->add_option("--output", words->identify.output, "output channel of the model")
+  verb->add_option("--output", arguments->identify.output, "output channel of the model")
       ->capture_default_str();
   verb->add_option(
-      "--trial", words->read.trial,
+      "--trial", arguments->read.trial,
       "trial of a session: number, or letter of its condition (I, A, B, C) [identification]");
-  measurement::add_read_options(*verb, words->read);
-  verb->add_option("--save", words->save, "file for the model, in the form that cancellation reads")
+  measurement::add_read_options(*verb, arguments->read);
+  verb->add_option("--save", arguments->save,
+                   "file for the model, in the form that cancellation reads")
       ->check(settings::check_name);
-  verb->add_option("--json", words->json, "file for all results")->check(settings::check_name);
+  verb->add_option("--json", arguments->json, "file for all results")->check(settings::check_name);
   verb->add_flag(
-      "--admittance", words->admittance,
+      "--admittance", arguments->admittance,
       "REC is a session of `stillhand lab --identify admittance,feedthrough`: admittance "
       "and feedthrough of the free stick with 95 % bands, and a physical arm");
-  verb->add_option("--lever-m", words->lever_m, "of --admittance: hand to pivot [m]")
+  verb->add_option("--lever-m", arguments->lever_m, "of --admittance: hand to pivot [m]")
       ->check(CLI::Range(0.02, 0.5))
       ->capture_default_str();
-  verb->add_option("--picture", words->picture, "of --admittance: PNG file for the responses")
+  verb->add_option("--picture", arguments->picture, "of --admittance: PNG file for the responses")
       ->check(settings::check_name);
-  verb->add_option("--held", words->held,
+  verb->add_option("--held", arguments->held,
                    "of --admittance: session with --held-stick; with --swapped it tests that "
                    "feedthrough to position is feedthrough to force times deflection per force");
-  verb->add_option("--swapped", words->swapped, "of --admittance: session with --swap-lines");
-  verb->callback([words, &status] { status = run(*words); });
+  verb->add_option("--swapped", arguments->swapped, "of --admittance: session with --swap-lines");
+  verb->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::identify

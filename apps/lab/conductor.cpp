@@ -162,7 +162,7 @@ void Conductor::repeat_sources() {
   if (named_sources_) sources_.write(*named_sources_);
 }
 
-void Conductor::drive(Stage& stage, bool with_peers) {
+void Conductor::run_stage(Stage& stage, bool with_peers) {
   while (!stage.over()) {
     look(with_peers);
     Actions actions;
@@ -208,14 +208,14 @@ void Conductor::await_everybody(double limit_s) {
   const runtime::ServiceOptions& options = service_.options();
   Matching matching(roster_, fmt::format("domain {} rig {}", options.domain, options.rig), limit_s,
                     trouble_);
-  drive(matching, true);
+  run_stage(matching, true);
   if (!matching.failure().empty()) throw std::runtime_error(matching.failure());
   if (!matching.complete()) throw_trouble();
 }
 
 void Conductor::begin_session() {
   ClockStart start(roster_, trouble_);
-  drive(start);
+  run_stage(start);
   throw_trouble();
   if (!start.failure().empty()) throw std::runtime_error(start.failure());
 }
@@ -227,7 +227,7 @@ void Conductor::pause() {
 
 void Conductor::rest(const std::string& what, double seconds) {
   Rest rest(what, seconds, trouble_);
-  drive(rest);
+  run_stage(rest);
 }
 
 void Conductor::show(const Prompt& prompt) {
@@ -247,7 +247,7 @@ std::optional<std::int64_t> Conductor::ask(const Prompt& prompt, const std::stri
   }
   show(prompt);
   Asking asking(what, shown_, prompt.steps, prompt.wait_s, trouble_);
-  drive(asking);
+  run_stage(asking);
   if (!asking.answer()) throw_trouble();
   return asking.answer();
 }
@@ -260,7 +260,7 @@ Asked Conductor::asked() {
 session::TrialOutcome Conductor::run(const session::PlannedTrial& planned) {
   planned_ = planned;
   TrialRun trial(planned.trial, roster_, trouble_);
-  drive(trial);
+  run_stage(trial);
   const TrialResult& result = trial.result();
   session::TrialOutcome outcome;
   outcome.planned = planned;
@@ -272,7 +272,7 @@ session::TrialOutcome Conductor::run(const session::PlannedTrial& planned) {
   if (outcome.completed) {
     const Trial& ended = result.trial;
     RecordingWait wait(ended.start_tick + ended.duration_ticks + ended.ramp_ticks, trouble_);
-    drive(wait);
+    run_stage(wait);
     outcome.completed = wait.failure().empty();
     outcome.aborted = wait.failure();
   }
@@ -282,7 +282,7 @@ session::TrialOutcome Conductor::run(const session::PlannedTrial& planned) {
 
 Conductor::AwaitedModel Conductor::await_model(std::int64_t trial) {
   ModelWait wait(trial, trouble_);
-  drive(wait);
+  run_stage(wait);
   const std::lock_guard lock(mutex_);
   return {model_, wait.failure()};
 }
@@ -290,7 +290,7 @@ Conductor::AwaitedModel Conductor::await_model(std::int64_t trial) {
 std::string Conductor::use(const cancellation::ControlModel& model) {
   given_ = cancellation::to_idl(model, cancellation::kFirstControlModel + models_++);
   ModelUse use(trouble_);
-  drive(use);
+  run_stage(use);
   return use.failure();
 }
 

@@ -88,7 +88,7 @@ class Conductor {
  private:
   void subscribe();
   /// Steps the stage until it is over.
-  void drive(Stage& stage, bool with_peers = false);
+  void run_stage(Stage& stage, bool with_peers = false);
   void look(bool with_peers);
   /// Announces who writes for each process, once.
   void name_sources();

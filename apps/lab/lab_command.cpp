@@ -24,8 +24,8 @@
 namespace stillhand::lab {
 namespace {
 
-// Options whose words are not the values of LabOptions.
-struct Words {
+// Options whose texts are not the values of LabOptions.
+struct Arguments {
   std::string conditions = "A,B,C";
   std::string who = "simulated";
   std::string motion = "noise";
@@ -42,44 +42,45 @@ struct Words {
 };
 
 // The options of the perturbed trial have no effect without --identify: they are refused.
-void take_perturbation(const Words& words, LabOptions& options) {
-  if (words.identify.empty()) {
-    const char* const given = words.perturb_period_s ? "--perturb-period-s"
-                              : words.task           ? "--task"
-                              : words.held           ? "--held-stick"
-                              : words.swapped        ? "--swap-lines"
-                                                     : nullptr;
+void take_perturbation(const Arguments& arguments, LabOptions& options) {
+  if (arguments.identify.empty()) {
+    const char* const given = arguments.perturb_period_s ? "--perturb-period-s"
+                              : arguments.task           ? "--task"
+                              : arguments.held           ? "--held-stick"
+                              : arguments.swapped        ? "--swap-lines"
+                                                         : nullptr;
     if (given == nullptr) return;
     throw ConfigError(given, "it without --identify", "it with --identify admittance,feedthrough");
   }
   options.protocol.conditions = {session::Condition::kP};
-  options.protocol.perturb_period_s = words.perturb_period_s.value_or(20.0);
-  options.protocol.stick_held = words.held;
-  options.protocol.perturb_swapped = words.swapped;
-  options.task = words.task.value_or(options.task);
+  options.protocol.perturb_period_s = arguments.perturb_period_s.value_or(20.0);
+  options.protocol.stick_held = arguments.held;
+  options.protocol.perturb_swapped = arguments.swapped;
+  options.task = arguments.task.value_or(options.task);
 }
 
 // An option of the road has no effect without --motion road: it is refused.
-void take_road(const Words& words, session::ProtocolOptions& protocol) {
-  if (protocol.motion != session::Motion::kRoad && (words.road_class || words.road_speed_m_s)) {
-    throw ConfigError(words.road_class ? "--road-class" : "--speed-m-s",
-                      "it with --motion " + words.motion, "it with --motion road alone");
+void take_road(const Arguments& arguments, session::ProtocolOptions& protocol) {
+  if (protocol.motion != session::Motion::kRoad &&
+      (arguments.road_class || arguments.road_speed_m_s)) {
+    throw ConfigError(arguments.road_class ? "--road-class" : "--speed-m-s",
+                      "it with --motion " + arguments.motion, "it with --motion road alone");
   }
-  protocol.road_class = words.road_class.value_or(protocol.road_class);
-  protocol.road_speed_m_s = words.road_speed_m_s.value_or(protocol.road_speed_m_s);
+  protocol.road_class = arguments.road_class.value_or(protocol.road_class);
+  protocol.road_speed_m_s = arguments.road_speed_m_s.value_or(protocol.road_speed_m_s);
 }
 
 // "2", "simulated", "devices", or a file; as many of them as are given.
-void take_rig(const std::vector<std::string>& words, LabOptions& options) {
+void take_rig(const std::vector<std::string>& arguments, LabOptions& options) {
   const auto is_number = [](const std::string& word) {
     return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
   };
-  if (std::ranges::count_if(words, is_number) > 1 ||
-      std::ranges::count_if(words, std::not_fn(is_number)) > 1) {
-    throw ConfigError("--rig", fmt::format("{}", fmt::join(words, " and ")),
+  if (std::ranges::count_if(arguments, is_number) > 1 ||
+      std::ranges::count_if(arguments, std::not_fn(is_number)) > 1) {
+    throw ConfigError("--rig", fmt::format("{}", fmt::join(arguments, " and ")),
                       "at most one number and one of simulated, devices or a file");
   }
-  for (const std::string& word : words) {
+  for (const std::string& word : arguments) {
     if (is_number(word)) {
       const auto [end, error] =
           std::from_chars(word.data(), word.data() + word.size(), options.rig);
@@ -100,11 +101,11 @@ void take_rig(const std::vector<std::string>& words, LabOptions& options) {
 }
 
 // The trials and the person or model that tracks.
-void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
-  lab.add_option("--conditions", words.conditions,
+void add_trial_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
+  lab.add_option("--conditions", arguments.conditions,
                  "comma-separated: " + session::known_conditions(session::kLabConditions))
       ->capture_default_str();
-  lab.add_option("--arms", words.arms,
+  lab.add_option("--arms", arguments.arms,
                  "for the condition scheduled: the person's arms relaxed and holding, two files of "
                  "`stillhand identify --admittance --json`, comma-separated")
       ->delimiter(',');
@@ -113,27 +114,27 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
   lab.add_option("--identify-seconds", options.protocol.identify_s,
                  "length of the pegged trial [s]; the paper's is 120")
       ->capture_default_str();
-  lab.add_option("--identify", words.identify,
+  lab.add_option("--identify", arguments.identify,
                  "admittance,feedthrough: in place of the conditions one trial in which motor and "
                  "platform move the free stick at once; `stillhand identify --admittance` reads it")
       ->excludes(lab.get_option("--conditions"))
       ->check(CLI::IsMember({"admittance,feedthrough"}));
-  lab.add_option("--perturb-period-s", words.perturb_period_s,
+  lab.add_option("--perturb-period-s", arguments.perturb_period_s,
                  "of --identify: period of both multisines [s]; the trial is a whole number of "
                  "them, five or more [20]");
-  lab.add_option("--task", words.task,
+  lab.add_option("--task", arguments.task,
                  "of --identify: what the simulated person does: hold, relax or give-way [hold]")
       ->check(CLI::IsMember({"hold", "relax", "give-way"}));
   lab.add_flag(
-      "--held-stick", words.held,
+      "--held-stick", arguments.held,
       "of --identify: the stick stays on its peg; `identify --admittance --held` reads it");
-  lab.add_flag("--swap-lines", words.swapped,
+  lab.add_flag("--swap-lines", arguments.swapped,
                "of --identify: motor and platform take each other's lines; `identify --admittance "
                "--swapped` reads it");
   lab.add_option("--seed", options.protocol.seed, "seed of everything random")
       ->check(session::check_seed)
       ->capture_default_str();
-  lab.add_option("--operator", words.who,
+  lab.add_option("--operator", arguments.who,
                  "who tracks: a simulated subject, or a person's mouse or gamepad")
       ->check(CLI::IsMember({"simulated", "mouse", "gamepad"}))
       ->capture_default_str();
@@ -149,17 +150,17 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
                "each trial waits until a person presses Start on the dashboard");
 }
 
-void add_motion_options(CLI::App& lab, LabOptions& options, Words& words) {
-  lab.add_option("--motion", words.motion,
+void add_motion_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
+  lab.add_option("--motion", arguments.motion,
                  "platform motion in B and C: noise (the paper's), road (ISO 8608), or ride")
       ->check(CLI::IsMember({"noise", "road", "ride"}))
       ->capture_default_str();
   lab.add_option("--ride", options.ride,
                  "recorded ride for --motion ride: CSV with a_y [m/s^2], or .mcap")
       ->check(settings::check_name);
-  lab.add_option("--road-class", words.road_class,
+  lab.add_option("--road-class", arguments.road_class,
                  "road for --motion road: ISO 8608 class, A (very good) to H [B]");
-  lab.add_option("--speed-m-s", words.road_speed_m_s,
+  lab.add_option("--speed-m-s", arguments.road_speed_m_s,
                  "speed of the vehicle on that road [m/s], 0.5 to 70 [20]");
   lab.add_option("--vehicle", options.vehicle,
                  "in B and C the stick drives a vehicle that moves the platform: first_order, "
@@ -195,7 +196,7 @@ void add_output_options(CLI::App& lab, LabOptions& options) {
 }
 
 // The machines, the bus and the services.
-void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
+void add_bus_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
   CLI::Option* domain = lab.add_option("--domain", options.domain, "DDS domain, 0 to 232");
   domain->capture_default_str();
   CLI::Option* inventory = lab.add_option(
@@ -209,7 +210,7 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
       ->excludes(inventory)
       ->check(settings::check_name);
   settings::repeatable(lab.add_option(
-      "--rig", words.rig,
+      "--rig", arguments.rig,
       "what the rig is made of: simulated; devices (a drive, a platform, sensors: devices.yaml of "
       "--config says which, `stillhand calibrate` comes first); or another file in the form of "
       "devices.yaml [simulated]. Or its number on the bus [1]. Both may be given"));
@@ -227,31 +228,31 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
   lab.add_option("--stop-key", options.stop_key,
                  "input device, such as /dev/input/event3: any key of it is an emergency stop, and "
                  "so is its loss");
-  lab.add_flag("--no-real-time", words.ordinary, "do not ask for real-time priority");
+  lab.add_flag("--no-real-time", arguments.ordinary, "do not ask for real-time priority");
 }
 
-void take_words(const Words& words, LabOptions& options) {
-  options.protocol.conditions = session::parse_conditions(words.conditions);
+void take_arguments(const Arguments& arguments, LabOptions& options) {
+  options.protocol.conditions = session::parse_conditions(arguments.conditions);
   const bool scheduled =
       std::ranges::find(options.protocol.conditions, session::Condition::kScheduled) !=
       options.protocol.conditions.end();
-  if (scheduled == words.arms.empty()) {
-    throw ConfigError("--arms", words.arms.empty() ? "nothing" : "files",
+  if (scheduled == arguments.arms.empty()) {
+    throw ConfigError("--arms", arguments.arms.empty() ? "nothing" : "files",
                       "two files with the condition scheduled, and none without it");
   }
-  if (scheduled) options.protocol.arms = schedule_values(words.arms);
-  options.who = words.who == "simulated" ? Operator::kSimulated : Operator::kMouse;
-  if ((words.who == "gamepad") == options.gamepad.empty()) {
+  if (scheduled) options.protocol.arms = schedule_values(arguments.arms);
+  options.who = arguments.who == "simulated" ? Operator::kSimulated : Operator::kMouse;
+  if ((arguments.who == "gamepad") == options.gamepad.empty()) {
     throw ConfigError("--gamepad", options.gamepad.empty() ? "nothing" : options.gamepad.string(),
                       "a device with --operator gamepad, and none without it");
   }
-  options.protocol.motion = words.motion == "road"   ? session::Motion::kRoad
-                            : words.motion == "ride" ? session::Motion::kRide
-                                                     : session::Motion::kBandNoise;
-  take_road(words, options.protocol);
-  take_perturbation(words, options);
-  take_rig(words.rig, options);
-  options.real_time = !words.ordinary;
+  options.protocol.motion = arguments.motion == "road"   ? session::Motion::kRoad
+                            : arguments.motion == "ride" ? session::Motion::kRide
+                                                         : session::Motion::kBandNoise;
+  take_road(arguments, options.protocol);
+  take_perturbation(arguments, options);
+  take_rig(arguments.rig, options);
+  options.real_time = !arguments.ordinary;
 }
 
 // What is left is what people use first.
@@ -275,7 +276,7 @@ void group_options(CLI::App& lab) {
 
 void add_lab_command(CLI::App& cli, int& status) {
   auto options = std::make_shared<LabOptions>();
-  auto words = std::make_shared<Words>();
+  auto arguments = std::make_shared<Arguments>();
   set_places(*options);
   CLI::App* lab = cli.add_subcommand(
       "lab",
@@ -286,13 +287,13 @@ void add_lab_command(CLI::App& cli, int& status) {
       "computes the results from the recording.\n"
       "Example: stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out "
       "run1");
-  add_trial_options(*lab, *options, *words);
-  add_motion_options(*lab, *options, *words);
+  add_trial_options(*lab, *options, *arguments);
+  add_motion_options(*lab, *options, *arguments);
   add_output_options(*lab, *options);
-  add_bus_options(*lab, *options, *words);
+  add_bus_options(*lab, *options, *arguments);
   group_options(*lab);
-  lab->callback([options, words, &status] {
-    take_words(*words, *options);
+  lab->callback([options, arguments, &status] {
+    take_arguments(*arguments, *options);
     runtime::Stop stop;
     status = run_lab(*options, stop);
   });

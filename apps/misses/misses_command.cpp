@@ -24,7 +24,7 @@
 namespace stillhand::misses {
 namespace {
 
-struct Words {
+struct Arguments {
   std::string recording;
   double least_ms = 5.0;
   std::filesystem::path json, picture;
@@ -78,20 +78,20 @@ report::Figure figure_of(const session::SessionRecording& session,
   return {.name = "misses", .panels = {std::move(force)}};
 }
 
-int run(const Words& words) {
-  report::ResultFiles files({{"--json", words.json}, {"--picture", words.picture}},
-                            {words.recording});
-  const session::SessionRecording session = session::read_session(words.recording);
+int run(const Arguments& arguments) {
+  report::ResultFiles files({{"--json", arguments.json}, {"--picture", arguments.picture}},
+                            {arguments.recording});
+  const session::SessionRecording session = session::read_session(arguments.recording);
   if (session.raw_samples.empty()) {
-    throw ConfigError(words.recording, "no sample of a rig", "the recording of a session");
+    throw ConfigError(arguments.recording, "no sample of a rig", "the recording of a session");
   }
-  const auto misses = session::misses_in(session, 1e-3 * words.least_ms);
+  const auto misses = session::misses_in(session, 1e-3 * arguments.least_ms);
   for (const session::Miss& miss : misses) {
     fmt::print("{:<22} {}{}\n", when(miss), session::what_happened(miss),
                miss.waited.empty() ? "" : fmt::format("; {} waited", fmt::join(miss.waited, ", ")));
   }
   if (misses.empty()) {
-    fmt::print("nobody was late by {} ms or more\n", words.least_ms);
+    fmt::print("nobody was late by {} ms or more\n", arguments.least_ms);
   }
   if (files.wants("--json")) files.set("--json", json_of(misses));
   if (files.wants("--picture")) {
@@ -101,7 +101,7 @@ int run(const Words& words) {
   }
   files.publish();
   for (const std::string& damage : session.damage) {
-    runtime::remark(words.recording + ": " + damage);
+    runtime::remark(arguments.recording + ": " + damage);
   }
   return 0;
 }
@@ -109,20 +109,21 @@ int run(const Words& words) {
 }  // namespace
 
 void add_misses_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
+  auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = cli.add_subcommand(
       "misses",
       "Says who was late in the recording of a session: which process was silent by itself, when,\n"
       "for how long, who had to wait for it, and what the motor force did.\n"
       "Example: stillhand misses run1/session.mcap --picture late.svg");
-  verb->add_option("FILE", words->recording, "recording of a session (MCAP)")->required();
-  verb->add_option("--least-ms", words->least_ms, "a process that is late by less is not listed")
+  verb->add_option("FILE", arguments->recording, "recording of a session (MCAP)")->required();
+  verb->add_option("--least-ms", arguments->least_ms,
+                   "a process that is late by less is not listed")
       ->check(CLI::Range(1.0, 1e4))
       ->capture_default_str();
-  verb->add_option("--json", words->json, "write the same as JSON to this file");
-  verb->add_option("--picture", words->picture,
+  verb->add_option("--json", arguments->json, "write the same as JSON to this file");
+  verb->add_option("--picture", arguments->picture,
                    "draw the motor force around the longest one into this file (SVG)");
-  verb->callback([words, &status] { status = run(*words); });
+  verb->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::misses

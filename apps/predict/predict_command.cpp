@@ -22,7 +22,7 @@
 namespace stillhand::predict {
 namespace {
 
-struct Words {
+struct Arguments {
   std::filesystem::path model;
   std::string recording;
   measurement::ReadOptions read;
@@ -53,13 +53,13 @@ bool is_svg(const std::filesystem::path& path) {
   return ending == ".svg";
 }
 
-void print(const Words& words, const Models& models, const Prediction& prediction,
+void print(const Arguments& arguments, const Models& models, const Prediction& prediction,
            const std::optional<Judgement>& judgement) {
   std::printf("%zu samples of %s from", prediction.table.row_count(), prediction.output.c_str());
   for (const std::string& input : models.carried.model.inputs) {
     std::printf(" %s", input.c_str());
   }
-  std::printf(" in %s\n", words.out.string().c_str());
+  std::printf(" in %s\n", arguments.out.string().c_str());
   if (models.origin) std::printf("model    %s\n", report::in_words(*models.origin).c_str());
   if (judgement) std::fputs(judgement_table(*judgement).c_str(), stdout);
   for (const std::string& note : prediction.notes) {
@@ -67,15 +67,15 @@ void print(const Words& words, const Models& models, const Prediction& predictio
   }
 }
 
-int run(const Words& words) {
+int run(const Arguments& arguments) {
   report::ResultFiles files(
-      {{"--out", words.out}, {"--json", words.json}, {"--picture", words.picture}},
-      {words.model, words.recording, words.read.map_file});
-  const bool svg = is_svg(words.picture);
+      {{"--out", arguments.out}, {"--json", arguments.json}, {"--picture", arguments.picture}},
+      {arguments.model, arguments.recording, arguments.read.map_file});
+  const bool svg = is_svg(arguments.picture);
   if (files.wants("--picture")) report::require_gnuplot();
-  const Models models = read_models(words.model);
+  const Models models = read_models(arguments.model);
   const diagnosis::Measurement measured =
-      measurement::read_measurement(words.recording, words.read);
+      measurement::read_measurement(arguments.recording, arguments.read);
   Prediction prediction = predict(models.carried, measured);
   const std::optional<Judgement> judgement = judged(prediction, models.linear, measured);
   if (files.wants("--json")) {
@@ -83,7 +83,7 @@ int run(const Words& words) {
   }
   if (files.wants("--picture")) {
     if (!judgement) {
-      throw ConfigError("--picture", words.recording + " without '" + prediction.output + "'",
+      throw ConfigError("--picture", arguments.recording + " without '" + prediction.output + "'",
                         "a recording that holds the output");
     }
     const std::vector<report::Figure> figures{judgement_figure(*judgement)};
@@ -93,14 +93,14 @@ int run(const Words& words) {
   if (judgement) prediction.table.columns.push_back(judgement->measured);
   files.set("--out", recording::to_csv(prediction.table));
   files.publish();
-  print(words, models, prediction, judgement);
+  print(arguments, models, prediction, judgement);
   return 0;
 }
 
 }  // namespace
 
 void add_predict_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
+  auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = cli.add_subcommand(
       "predict",
       "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\n"
@@ -110,24 +110,24 @@ void add_predict_command(CLI::App& cli, int& status) {
       "tone, a drift, a burst, a changing gain) are left out; beyond the range in which it was\n"
       "seen, an effect is held at its edge. A note reports each.\n"
       "Example: stillhand predict model.json ride.csv --out prediction.csv");
-  verb->add_option("MODEL", words->model, "model file")->required();
-  verb->add_option("REC", words->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
+  verb->add_option("MODEL", arguments->model, "model file")->required();
+  verb->add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
       ->required();
-  verb->add_option("--trial", words->read.trial,
+  verb->add_option("--trial", arguments->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(*verb, words->read);
-  verb->add_option("--out", words->out,
+  measurement::add_read_options(*verb, arguments->read);
+  verb->add_option("--out", arguments->out,
                    "CSV file of the prediction; next to it the measured output, where REC has it")
       ->required()
       ->check(settings::check_name);
-  verb->add_option("--json", words->json,
+  verb->add_option("--json", arguments->json,
                    "file for RMSE, VAF and fit of the linear and the carried model; -: standard\n"
                    "output, and the words go to standard error")
       ->check(settings::check_name);
-  verb->add_option("--picture", words->picture,
+  verb->add_option("--picture", arguments->picture,
                    "PNG or SVG file: measured, linear and carried over an excerpt, and residuals")
       ->check(settings::check_name);
-  verb->callback([words, &status] { status = run(*words); });
+  verb->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::predict

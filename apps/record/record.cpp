@@ -75,7 +75,7 @@ class Run {
     tap_.stop();
     const recording::Status closed = recorded_->tape().close();
     required_.step(recorded_->tally().heard(), recorded_->trials().newest());
-    if (remote_.asked()) remote_.tell_last(status());
+    if (remote_.asked()) remote_.publish_last(status());
     const bool whole = print_end(*recorded_, tap_, closed, options_.domain);
     return whole && required_.missing().empty() ? 0 : 1;
   }
@@ -138,10 +138,10 @@ class Run {
     for (std::int64_t now_ns = began_ns; !stop_.requested() && !tape.stopped();
          now_ns = runtime::monotonic_ns()) {
       if (options_.duration_ns && now_ns - began_ns >= *options_.duration_ns) break;
-      obey(remote_, tape, options_.tape.window_ns > 0, stop_);
+      execute(remote_, tape, options_.tape.window_ns > 0, stop_);
       if (now_ns - status_ns >= kStatusInterval_ns) {
         status_ns = now_ns;
-        remote_.tell(status());
+        remote_.publish(status());
       }
       if (now_ns - printed_ns >= kPrintInterval_ns) {
         if (printed_ns != 0) warn_of_patterns();  // a second for discovery

@@ -22,7 +22,7 @@ constexpr double kBytesPerMb = 1e6;
 constexpr double kMostSeconds = 1e7;  // four months
 constexpr double kMostMb = 1e9;
 
-struct Words {
+struct Arguments {
   RecordOptions options;
   bool ordinary = false;
   std::string out, remote;
@@ -34,24 +34,24 @@ std::int64_t ns_of(double seconds) {
   return std::llround(seconds * static_cast<double>(runtime::kNsPerSecond));
 }
 
-int run(Words words) {
-  RecordOptions& options = words.options;
-  if (words.remote.empty() && words.out.empty()) {
+int run(Arguments arguments) {
+  RecordOptions& options = arguments.options;
+  if (arguments.remote.empty() && arguments.out.empty()) {
     throw ConfigError("--out", "none", "the MCAP file to write");
   }
-  options.tape = recording::tape_options(words.keep, words.out);
-  if (words.duration_s > 0) options.duration_ns = ns_of(words.duration_s);
-  options.tape.rotation.max_ns = ns_of(words.rotate_s);
-  options.tape.rotation.max_bytes = static_cast<std::uint64_t>(words.rotate_mb * kBytesPerMb);
-  options.tape.window_ns = ns_of(words.window_s);
-  if ((options.trigger_on_deadline || !options.triggers.empty()) && words.window_s <= 0) {
+  options.tape = recording::tape_options(arguments.keep, arguments.out);
+  if (arguments.duration_s > 0) options.duration_ns = ns_of(arguments.duration_s);
+  options.tape.rotation.max_ns = ns_of(arguments.rotate_s);
+  options.tape.rotation.max_bytes = static_cast<std::uint64_t>(arguments.rotate_mb * kBytesPerMb);
+  options.tape.window_ns = ns_of(arguments.window_s);
+  if ((options.trigger_on_deadline || !options.triggers.empty()) && arguments.window_s <= 0) {
     throw ConfigError("--trigger", "no --window", "--window S together with a trigger");
   }
   runtime::Stop stop;
-  if (!words.remote.empty()) return run_remote(words.remote, options, stop);
+  if (!arguments.remote.empty()) return run_remote(arguments.remote, options, stop);
   // Before the participant exists, since Fast DDS's threads inherit the priority.  If the system
   // refuses it, the verb runs without.
-  if (!words.ordinary) {
+  if (!arguments.ordinary) {
     runtime::become_real_time(!options.security.empty(), runtime::kListenerPriority);
   }
   return run_record(options, stop);
@@ -60,8 +60,8 @@ int run(Words words) {
 }  // namespace
 
 void add_record_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
-  RecordOptions& options = words->options;
+  auto arguments = std::make_shared<Arguments>();
+  RecordOptions& options = arguments->options;
   options.profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "record",
@@ -71,7 +71,7 @@ void add_record_command(CLI::App& cli, int& status) {
       "character. It ends with Ctrl-C or after --duration, and prints for each topic how many\n"
       "messages it received, lost and wrote. Exit status 1 when a message was lost.\n"
       "Example: stillhand record --out run.mcap --topics 'stillhand/*' --block '*status'");
-  verb->add_option("--out", words->out, "MCAP file to write; it must not exist yet");
+  verb->add_option("--out", arguments->out, "MCAP file to write; it must not exist yet");
   settings::repeatable(verb->add_option("--topics", options.topics.allow,
                                         "pattern of topics to record; may be repeated"));
   settings::repeatable(verb->add_option("--block", options.topics.block,
@@ -80,13 +80,14 @@ void add_record_command(CLI::App& cli, int& status) {
       "--require", options.required,
       "required topic: a warning in red when it is silent before a trial starts, and exit "
       "status 1 when it is silent at the end; may be repeated"));
-  verb->add_option("--duration", words->duration_s, "end after this time [s]")
+  verb->add_option("--duration", arguments->duration_s, "end after this time [s]")
       ->check(recording::within(0.001, kMostSeconds));
-  verb->add_option("--rotate-s", words->rotate_s, "continue in a new file after this time [s]")
+  verb->add_option("--rotate-s", arguments->rotate_s, "continue in a new file after this time [s]")
       ->check(recording::within(0.1, kMostSeconds));
-  verb->add_option("--rotate-mb", words->rotate_mb, "continue in a new file after this size [MB]")
+  verb->add_option("--rotate-mb", arguments->rotate_mb,
+                   "continue in a new file after this size [MB]")
       ->check(recording::within(0.1, kMostMb));
-  verb->add_option("--window", words->window_s,
+  verb->add_option("--window", arguments->window_s,
                    "event window: keep the last seconds in memory and write them at a trigger [s]")
       ->check(recording::within(0.1, 3600.0));
   settings::repeatable(
@@ -95,11 +96,11 @@ void add_record_command(CLI::App& cli, int& status) {
                        "TOPIC.FIELD<VALUE, |FIELD| for its magnitude; may be repeated"));
   verb->add_flag("--trigger-on-deadline", options.trigger_on_deadline,
                  "write the window when a process reports a missed deadline");
-  recording::add_keep_options(*verb, words->keep);
+  recording::add_keep_options(*verb, arguments->keep);
   verb->add_option(
-      "--remote", words->remote,
+      "--remote", arguments->remote,
       "do not record; send pause, resume, trigger or stop to the recorders of the domain");
-  verb->add_flag("--no-real-time", words->ordinary, "do not ask for real-time priority");
+  verb->add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
   verb->add_option(
@@ -107,7 +108,7 @@ void add_record_command(CLI::App& cli, int& status) {
           "folder of certificates (deploy/security/make.sh); the verb uses that of the tap "
           "[no security]")
       ->check(settings::check_name);
-  verb->callback([words, &status] { status = run(*words); });
+  verb->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::record

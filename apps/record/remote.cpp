@@ -12,8 +12,8 @@ namespace stillhand::record {
 namespace {
 
 /// @returns why the command is refused, or ""
-std::string obey_one(const stillhand_msgs::RecorderCommand& command, recording::Tape& tape,
-                     bool windowed, runtime::Stop& stop) {
+std::string execute_one(const stillhand_msgs::RecorderCommand& command, recording::Tape& tape,
+                        bool windowed, runtime::Stop& stop) {
   switch (command.action()) {
     case stillhand_msgs::RECORDER_PAUSE:
       tape.set_paused(true);
@@ -42,11 +42,11 @@ runtime::Bus::Options outsider(const std::string& verb, const RecordOptions& opt
   return bus;
 }
 
-void obey(Remote& remote, recording::Tape& tape, bool windowed, runtime::Stop& stop) {
+void execute(Remote& remote, recording::Tape& tape, bool windowed, runtime::Stop& stop) {
   while (const auto command = remote.next()) {
     const std::string wanted = command->recorder().to_string();
     if (!wanted.empty() && wanted != remote.name()) continue;
-    remote.answer(*command, obey_one(*command, tape, windowed, stop));
+    remote.answer(*command, execute_one(*command, tape, windowed, stop));
   }
 }
 

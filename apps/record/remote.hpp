@@ -18,7 +18,7 @@ using Remote =
 runtime::Bus::Options outsider(const std::string& verb, const RecordOptions& options);
 
 /// Carries out every command that has come.  @param windowed  an event window is kept
-void obey(Remote& remote, recording::Tape& tape, bool windowed, runtime::Stop& stop);
+void execute(Remote& remote, recording::Tape& tape, bool windowed, runtime::Stop& stop);
 
 /// @param missing  required topics that are silent
 stillhand_msgs::RecorderStatus status_of(const Remote& remote, const recording::TapeStatus& tape,

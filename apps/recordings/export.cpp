@@ -112,7 +112,7 @@ class Exporter {
     go_on_unless(options_.stopped);
     for (auto& file : files_) file->publish();
     exported.left_out = left_out_;
-    recording_.tell_loss(messages_);
+    recording_.report_loss(messages_);
     return exported;
   }
 

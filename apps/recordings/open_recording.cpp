@@ -30,7 +30,7 @@ OpenRecording::OpenRecording(const std::string& file, Stopped stopped)
   }
 }
 
-void OpenRecording::tell_loss(std::uint64_t messages) const {
+void OpenRecording::report_loss(std::uint64_t messages) const {
   const std::string line = recording::loss_line(path, reader, messages, source.being_written());
   if (!line.empty()) runtime::remark(line);
 }

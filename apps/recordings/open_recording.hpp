@@ -40,7 +40,7 @@ struct OpenRecording {
 
   /// Prints on standard error, in one line, what is lost; nothing if nothing is lost.
   /// @param messages  [-] that were delivered
-  void tell_loss(std::uint64_t messages) const;
+  void report_loss(std::uint64_t messages) const;
 
   std::string path;
   StoppableFile source;

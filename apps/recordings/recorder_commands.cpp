@@ -30,32 +30,32 @@ CLI::App* file_verb(CLI::App& cli, std::string& recording, const std::string& na
   return verb;
 }
 
-struct InfoWords {
+struct InfoArguments {
   std::string recording;
   std::filesystem::path json;
 };
 
-int run_info(const InfoWords& words) {
-  report::ResultFiles files({{"--json", words.json}}, {words.recording});
-  OpenRecording recording(words.recording);
+int run_info(const InfoArguments& arguments) {
+  report::ResultFiles files({{"--json", arguments.json}}, {arguments.recording});
+  OpenRecording recording(arguments.recording);
   const RecordingInfo info = info_of(recording);
   if (files.wants("--json")) files.set_json("--json", info_json(info));
   files.publish();
   std::fputs(info_text(info).c_str(), stdout);
-  recording.tell_loss(info.messages);
+  recording.report_loss(info.messages);
   return 0;
 }
 
 void add_info(CLI::App& cli, int& status) {
-  auto words = std::make_shared<InfoWords>();
+  auto arguments = std::make_shared<InfoArguments>();
   CLI::App* verb = file_verb(
-      cli, words->recording, "info",
+      cli, arguments->recording, "info",
       "Prints what a recording holds: topics, types, messages, rates, lost ticks, QoS,\n"
       "metadata, damage. Reads the whole file and checks every checksum. Of a file that a crash\n"
       "left open, it reads what is there and prints what is lost.\n"
       "Example: stillhand info demo/session.mcap --json info.json");
-  verb->add_option("--json", words->json, "write the same as JSON to this file");
-  verb->callback([words, &status] { status = run_info(*words); });
+  verb->add_option("--json", arguments->json, "write the same as JSON to this file");
+  verb->callback([arguments, &status] { status = run_info(*arguments); });
 }
 
 int run_verify(const std::string& path) {
@@ -69,7 +69,7 @@ int run_verify(const std::string& path) {
     return 0;
   }
   std::fputs(damage_text(damage).c_str(), stdout);
-  recording.tell_loss(messages);
+  recording.report_loss(messages);
   return 1;
 }
 
@@ -83,20 +83,20 @@ void add_verify(CLI::App& cli, int& status) {
   verb->callback([path, &status] { status = run_verify(*path); });
 }
 
-struct RecoverWords {
+struct RecoverArguments {
   std::string recording;
   RecoverOptions options;
   std::string compression = "zstd";
 };
 
-int run_recover(RecoverWords words) {
+int run_recover(RecoverArguments arguments) {
   runtime::Stop stop;
-  words.options.stopped = [&stop] { return stop.requested(); };
-  words.options.compression =
-      *recording::compression_of(words.compression == "none" ? "" : words.compression);
-  const Recovered result = recover(words.recording, words.options);
+  arguments.options.stopped = [&stop] { return stop.requested(); };
+  arguments.options.compression =
+      *recording::compression_of(arguments.compression == "none" ? "" : arguments.compression);
+  const Recovered result = recover(arguments.recording, arguments.options);
   if (result.was_whole) {
-    fmt::print("{}: whole; nothing to recover\n", words.recording);
+    fmt::print("{}: whole; nothing to recover\n", arguments.recording);
     return 0;
   }
   for (const std::string& finding : result.findings) fmt::print("{}\n", finding);
@@ -110,37 +110,37 @@ int run_recover(RecoverWords words) {
 }
 
 void add_recover(CLI::App& cli, int& status) {
-  auto words = std::make_shared<RecoverWords>();
+  auto arguments = std::make_shared<RecoverArguments>();
   CLI::App* verb = file_verb(
-      cli, words->recording, "recover",
+      cli, arguments->recording, "recover",
       "Copies everything readable of a cut-off or damaged recording into a new file, and prints\n"
       "what is lost. With --out the old file stays as it is. Without --out the new file takes\n"
       "the name of the old one, which is kept as FILE.damaged. The new file appears when it is\n"
       "complete and on the disk. If the recording is whole, nothing is written.\n"
       "Example: stillhand recover crashed.mcap --out whole.mcap");
-  verb->add_option("--out", words->options.out, "file to write; it must not exist yet");
-  verb->add_option("--compression", words->compression,
+  verb->add_option("--out", arguments->options.out, "file to write; it must not exist yet");
+  verb->add_option("--compression", arguments->compression,
                    "compression of the chunks: zstd, lz4 or none")
       ->check(CLI::IsMember({"zstd", "lz4", "none"}))
       ->capture_default_str();
-  verb->callback([words, &status] { status = run_recover(*words); });
+  verb->callback([arguments, &status] { status = run_recover(*arguments); });
 }
 
-struct ExportWords {
+struct ExportArguments {
   std::string recording;
   std::filesystem::path ros2bag;
   ExportOptions options;
 };
 
 // Messages of ROS 2 in the place of tables: of a session alone, and of all its topics.
-int run_ros2_bag(const ExportWords& words, const Stopped& stopped) {
-  const ExportOptions& options = words.options;
+int run_ros2_bag(const ExportArguments& arguments, const Stopped& stopped) {
+  const ExportOptions& options = arguments.options;
   if (!options.csv.empty() || !options.mat.empty() || !options.hdf5.empty() ||
       !options.topics.empty()) {
     throw ConfigError("--ros2bag", "it with --csv, --mat, --hdf5 or --topics", "it alone");
   }
-  const report::ResultFiles checked({{"--ros2bag", words.ros2bag}}, {words.recording});
-  const Ros2Bag bag = write_ros2_bag(words.recording, words.ros2bag, stopped);
+  const report::ResultFiles checked({{"--ros2bag", arguments.ros2bag}}, {arguments.recording});
+  const Ros2Bag bag = write_ros2_bag(arguments.recording, arguments.ros2bag, stopped);
   fmt::print("{:<40} {:>12}\n", "topic", "messages");
   for (const auto& [topic, messages] : bag.topics) fmt::print("{:<40} {:>12}\n", topic, messages);
   std::fflush(stdout);
@@ -151,16 +151,16 @@ int run_ros2_bag(const ExportWords& words, const Stopped& stopped) {
   return 0;
 }
 
-int run_export(const ExportWords& words) {
+int run_export(const ExportArguments& arguments) {
   runtime::Stop stop;
-  ExportOptions options = words.options;
+  ExportOptions options = arguments.options;
   options.stopped = [&stop] { return stop.requested(); };
-  if (!words.ros2bag.empty()) return run_ros2_bag(words, options.stopped);
+  if (!arguments.ros2bag.empty()) return run_ros2_bag(arguments, options.stopped);
   if (options.csv.empty() && options.mat.empty() && options.hdf5.empty()) {
     throw ConfigError("export", "no format",
                       "--csv DIR, --mat FILE, --hdf5 FILE or --ros2bag FILE");
   }
-  const Exported exported = export_recording(words.recording, options);
+  const Exported exported = export_recording(arguments.recording, options);
   fmt::print("{:<40} {:>12} {:>9}\n", "table", "rows", "columns");
   for (const ExportedTopic& topic : exported.topics) {
     fmt::print("{:<40} {:>12} {:>9}\n", topic.name, topic.rows, topic.columns);
@@ -178,24 +178,24 @@ int run_export(const ExportWords& words) {
 }
 
 void add_export(CLI::App& cli, int& status) {
-  auto words = std::make_shared<ExportWords>();
+  auto arguments = std::make_shared<ExportArguments>();
   CLI::App* verb = file_verb(
-      cli, words->recording, "export",
+      cli, arguments->recording, "export",
       "Writes a recording as tables, one for each topic: a folder of CSV files, a MATLAB file\n"
       "(version 5), an HDF5 file, or all three. The first column is `t [s]` since the\n"
       "recording's start; units come from the IDL that the recording carries. Any recording in\n"
       "CDR with its IDL as schema can be exported.\n"
       "Example: stillhand export demo/session.mcap --csv tables --hdf5 session.h5");
-  verb->add_option("--csv", words->options.csv, "folder for CSV files, one for each topic");
-  verb->add_option("--mat", words->options.mat, "MATLAB file, one struct for each topic");
-  verb->add_option("--hdf5", words->options.hdf5, "HDF5 file, one group for each topic");
-  verb->add_option("--ros2bag", words->ros2bag,
+  verb->add_option("--csv", arguments->options.csv, "folder for CSV files, one for each topic");
+  verb->add_option("--mat", arguments->options.mat, "MATLAB file, one struct for each topic");
+  verb->add_option("--hdf5", arguments->options.hdf5, "HDF5 file, one group for each topic");
+  verb->add_option("--ros2bag", arguments->ros2bag,
                    "MCAP file with messages of ROS 2 (sensor_msgs/Imu and so on), of a session");
-  verb->add_option("--topics", words->options.topics,
+  verb->add_option("--topics", arguments->options.topics,
                    "names or patterns with * and ?, comma-separated [every topic]")
       ->delimiter(',')
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->callback([words, &status] { status = run_export(*words); });
+  verb->callback([arguments, &status] { status = run_export(*arguments); });
 }
 
 }  // namespace

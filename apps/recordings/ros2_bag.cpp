@@ -107,7 +107,7 @@ class Bag {
                         "the recording of a session, with stillhand/sensed");
     }
     check(writer_.close());
-    recording_.tell_loss(messages);
+    recording_.report_loss(messages);
     return bag_;
   }
 

@@ -28,8 +28,8 @@ std::int64_t log_time(double at_s, const Played& played) {
 }
 
 /// @returns why the command is refused, or ""
-std::string obey_one(const stillhand_msgs::ReplayCommand& command, Player& player,
-                     const Played& played, bool& quit) {
+std::string execute_one(const stillhand_msgs::ReplayCommand& command, Player& player,
+                        const Played& played, bool& quit) {
   switch (command.action()) {
     case stillhand_msgs::REPLAY_PLAY:
       player.set_paused(false);
@@ -73,11 +73,11 @@ std::string obey_one(const stillhand_msgs::ReplayCommand& command, Player& playe
 
 }  // namespace
 
-void obey(Remote& remote, Player& player, const Played& played, bool& quit) {
+void execute(Remote& remote, Player& player, const Played& played, bool& quit) {
   while (const auto command = remote.next()) {
-    remote.answer(*command, obey_one(*command, player, played, quit));
+    remote.answer(*command, execute_one(*command, player, played, quit));
     // At once, for the program that asked.
-    tell_status(remote, player, played);
+    publish_status(remote, player, played);
   }
 }
 
@@ -100,12 +100,12 @@ stillhand_msgs::ReplayStatus status_of(const Player& player, const Played& playe
 
 }  // namespace
 
-void tell_status(Remote& remote, const Player& player, const Played& played) {
-  remote.tell(status_of(player, played));
+void publish_status(Remote& remote, const Player& player, const Played& played) {
+  remote.publish(status_of(player, played));
 }
 
-void tell_last_status(Remote& remote, const Player& player, const Played& played) {
-  remote.tell_last(status_of(player, played));
+void publish_last_status(Remote& remote, const Player& player, const Played& played) {
+  remote.publish_last(status_of(player, played));
 }
 
 stillhand_msgs::ReplayCommand parse_command(const std::string& text) {

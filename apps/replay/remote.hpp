@@ -20,10 +20,10 @@ struct Played {
 };
 
 /// Carries out every command that has come; `quit` becomes true at a stop.
-void obey(Remote& remote, Player& player, const Played& played, bool& quit);
-void tell_status(Remote& remote, const Player& player, const Played& played);
+void execute(Remote& remote, Player& player, const Played& played, bool& quit);
+void publish_status(Remote& remote, const Player& player, const Played& played);
 /// The same, repeated for half a second at the end of the replay.
-void tell_last_status(Remote& remote, const Player& player, const Played& played);
+void publish_last_status(Remote& remote, const Player& player, const Played& played);
 
 /// "seek 3.5" and the like as a command.  @throws ConfigError
 stillhand_msgs::ReplayCommand parse_command(const std::string& text);

@@ -74,7 +74,7 @@ void wait_for_discovery(const RoutePlan& plan, const runtime::Playback& playback
   }
 }
 
-void obey(Key key, Player& player, bool& quit) {
+void execute(Key key, Player& player, bool& quit) {
   switch (key) {
     case Key::kPause:
       return player.set_paused(!player.paused());
@@ -167,21 +167,21 @@ void play(const ReplayOptions& options, const PlaySpan& span, const Played& play
     const std::optional<std::int64_t> idle_ns = player.step();
     if (!idle_ns) break;
     if (const auto key = keyboard.wait(std::max<std::int64_t>(*idle_ns, 0))) {
-      obey(*key, player, quit);
+      execute(*key, player, quit);
     }
     if (const std::int64_t now_ns = runtime::monotonic_ns();
         now_ns - printed_ns > kPrintInterval_ns) {
       printed_ns = now_ns;
       print_progress(player, span);
     }
-    obey(remote, player, played, quit);
+    execute(remote, player, played, quit);
     if (const std::int64_t now_ns = runtime::monotonic_ns();
         now_ns - status_ns >= kStatusInterval_ns) {
       status_ns = now_ns;
-      tell_status(remote, player, played);
+      publish_status(remote, player, played);
     }
   }
-  if (remote.asked()) tell_last_status(remote, player, played);
+  if (remote.asked()) publish_last_status(remote, player, played);
 }
 
 void print_end(const Player& player, std::size_t channels, std::uint64_t unheard) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMostSeconds = 1e7;
 
-struct Words {
+struct Arguments {
   ReplayOptions options;
   bool ordinary = false;
   std::string rate = "1", remote;
@@ -30,36 +30,36 @@ std::int64_t ns_of(double seconds) {
   return std::llround(seconds * static_cast<double>(runtime::kNsPerSecond));
 }
 
-int run(Words words) {
-  ReplayOptions& options = words.options;
-  const auto rate = recording::PlayRate::parse(words.rate);
-  if (!rate) throw ConfigError("--rate", words.rate, "0.1 to 100, at most three decimals");
+int run(Arguments arguments) {
+  ReplayOptions& options = arguments.options;
+  const auto rate = recording::PlayRate::parse(arguments.rate);
+  if (!rate) throw ConfigError("--rate", arguments.rate, "0.1 to 100, at most three decimals");
   options.rate = *rate;
-  for (const std::string& pair : words.remap) {
+  for (const std::string& pair : arguments.remap) {
     const std::size_t sign = pair.find('=');
     if (sign == 0 || sign == std::string::npos || sign + 1 == pair.size()) {
       throw ConfigError("--remap", pair, "RECORDED=WRITTEN, two names of topics");
     }
     options.remap[pair.substr(0, sign)] = pair.substr(sign + 1);
   }
-  if (words.start_s >= 0) options.start_ns = ns_of(words.start_s);
-  if (words.end_s >= 0) options.end_ns = ns_of(words.end_s);
-  options.wait_limit_ns = ns_of(words.wait_s);
+  if (arguments.start_s >= 0) options.start_ns = ns_of(arguments.start_s);
+  if (arguments.end_s >= 0) options.end_ns = ns_of(arguments.end_s);
+  options.wait_limit_ns = ns_of(arguments.wait_s);
   options.keyboard = true;
   runtime::Stop stop;
-  if (!words.remote.empty()) return run_remote(words.remote, options, stop);
+  if (!arguments.remote.empty()) return run_remote(arguments.remote, options, stop);
   if (options.file.empty()) throw ConfigError("REC", "none", "the MCAP recording to play");
   // Before the participant exists, since Fast DDS's threads inherit the priority.  If the system
   // refuses it, the verb runs without.
-  if (!words.ordinary) runtime::become_real_time();
+  if (!arguments.ordinary) runtime::become_real_time();
   return run_replay(options, stop);
 }
 
 }  // namespace
 
 void add_replay_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
-  ReplayOptions& options = words->options;
+  auto arguments = std::make_shared<Arguments>();
+  ReplayOptions& options = arguments->options;
   options.profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "replay",
@@ -71,7 +71,7 @@ void add_replay_command(CLI::App& cli, int& status) {
       "loop start, b loop end, c loop off; q quit.\n"
       "Example: stillhand replay run/session.mcap --domain 7 --topics stillhand/sensed --rate 0.5");
   verb->add_option("REC", options.file, "MCAP recording");
-  verb->add_option("--rate", words->rate, "speed relative to the recording, 0.1 to 100")
+  verb->add_option("--rate", arguments->rate, "speed relative to the recording, 0.1 to 100")
       ->capture_default_str();
   settings::repeatable(verb->add_option(
       "--topics", options.topics.allow,
@@ -79,28 +79,29 @@ void add_replay_command(CLI::App& cli, int& status) {
   settings::repeatable(verb->add_option("--block", options.topics.block,
                                         "pattern of topics not to play; may be repeated"));
   settings::repeatable(
-      verb->add_option("--remap", words->remap,
+      verb->add_option("--remap", arguments->remap,
                        "RECORDED=WRITTEN: write a topic under another name; may be repeated"));
-  verb->add_option("--start", words->start_s, "begin at this time [s] after the recording's start")
+  verb->add_option("--start", arguments->start_s,
+                   "begin at this time [s] after the recording's start")
       ->check(recording::within(0.0, kMostSeconds));
-  verb->add_option("--end", words->end_s, "end at this time [s] after the recording's start")
+  verb->add_option("--end", arguments->end_s, "end at this time [s] after the recording's start")
       ->check(recording::within(0.0, kMostSeconds));
   verb->add_flag("--loop", options.loop, "play again from the start when the end is reached");
   verb->add_flag("--paused", options.begin_paused, "begin paused");
   settings::repeatable(
       verb->add_option("--wait-for", options.wait_for,
                        "topic that must have a reader before the replay begins; may be repeated"));
-  verb->add_option("--wait-seconds", words->wait_s, "longest wait of --wait-for [s]")
+  verb->add_option("--wait-seconds", arguments->wait_s, "longest wait of --wait-for [s]")
       ->check(recording::within(0.0, kMostSeconds))
       ->capture_default_str();
   verb->add_option(
-      "--remote", words->remote,
+      "--remote", arguments->remote,
       "do not play; send a command to the replay of the domain: play, pause, step, stop, "
       "\"seek S\", \"rate R\", \"loop S S\", loop-off");
-  verb->add_flag("--no-real-time", words->ordinary, "do not ask for real-time priority");
+  verb->add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
-  verb->callback([words, &status] { status = run(*words); });
+  verb->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::replay

@@ -30,14 +30,14 @@ namespace stillhand::study {
 namespace {
 
 // Options that are no field of StudyOptions.
-struct Words {
+struct Arguments {
   std::string conditions = "A,B,C";
   std::filesystem::path population;
   std::filesystem::path out;
   std::vector<std::filesystem::path> sessions;
   bool explain_paper = false;
   bool calibrate = false;
-  CampaignWords campaign;
+  CampaignArguments campaign;
 };
 
 // Without --subjects: enough for the spread between subjects.
@@ -65,36 +65,36 @@ auto with_progress(const auto& work, const ExplainOptions& options) {
   return result;
 }
 
-int run_calibration(const StudyRecord& record, const Words& words, bool subjects_given) {
+int run_calibration(const StudyRecord& record, const Arguments& arguments, bool subjects_given) {
   std::vector<std::filesystem::path> inputs;
-  if (!words.population.empty()) inputs.push_back(words.population);
-  report::ResultFiles files({{"--out", words.out}}, inputs);
+  if (!arguments.population.empty()) inputs.push_back(arguments.population);
+  report::ResultFiles files({{"--out", arguments.out}}, inputs);
   const Calibration calibration = with_progress(calibrate, explain_options(record, subjects_given));
   files.set("--out", population_yaml(calibration, record.command_line));
   files.publish();
   print_calibration(calibration);
-  fmt::print("population in {}\n", words.out.string());
+  fmt::print("population in {}\n", arguments.out.string());
   return 0;
 }
 
-int explain(const StudyRecord& record, const Words& words, bool subjects_given) {
-  report::StagedFolder folder(words.out);
+int explain(const StudyRecord& record, const Arguments& arguments, bool subjects_given) {
+  report::StagedFolder folder(arguments.out);
   report::require_gnuplot();
   const Explanation explanation =
       with_progress(explain_paper, explain_options(record, subjects_given));
   write_explanation(explanation, record.command_line, folder);
   print_explanation(explanation);
-  fmt::print("report in {}\n", words.out.string());
+  fmt::print("report in {}\n", arguments.out.string());
   return 0;
 }
 
 // Conditions, lengths and seed.
-void add_protocol_options(CLI::App& study, StudyOptions& options, Words& words) {
+void add_protocol_options(CLI::App& study, StudyOptions& options, Arguments& arguments) {
   study.add_option("--seed", options.seed, "seed of everything random")
       ->check(session::check_seed)
       ->capture_default_str();
   study
-      .add_option("--conditions", words.conditions,
+      .add_option("--conditions", arguments.conditions,
                   session::known_conditions(session::kStudyConditions))
       ->capture_default_str();
   study
@@ -114,11 +114,11 @@ void add_protocol_options(CLI::App& study, StudyOptions& options, Words& words) 
 }
 
 // Subjects and their rigs.
-void add_subject_options(CLI::App& study, StudyOptions& options, Words& words) {
+void add_subject_options(CLI::App& study, StudyOptions& options, Arguments& arguments) {
   study.add_option("--subjects", options.subjects, "number of subjects; the paper has 12")
       ->capture_default_str();
   study
-      .add_option("--population", words.population,
+      .add_option("--population", arguments.population,
                   "file with the population's distributions; deploy/experiments/population.yaml "
                   "shows every key")
       ->check(settings::check_name);
@@ -146,9 +146,9 @@ void add_subject_options(CLI::App& study, StudyOptions& options, Words& words) {
 }
 
 // The study of recorded people.
-void add_sessions_option(CLI::App& study, Words& words) {
+void add_sessions_option(CLI::App& study, Arguments& arguments) {
   CLI::Option* sessions = study.add_option(
-      "--sessions", words.sessions,
+      "--sessions", arguments.sessions,
       "folders of recorded sessions or of experiments: the study of the people in them, from "
       "session.mcap alone");
   for (const CLI::Option* option : study.get_options()) {
@@ -163,7 +163,7 @@ void add_sessions_option(CLI::App& study, Words& words) {
 
 void add_study_command(CLI::App& cli, int& status) {
   auto record = std::make_shared<StudyRecord>();
-  auto words = std::make_shared<Words>();
+  auto arguments = std::make_shared<Arguments>();
   record->options.protocol.identify_s = 120.0;  // paper III-A
   CLI::App* study = cli.add_subcommand(
       "study",
@@ -172,16 +172,16 @@ void add_study_command(CLI::App& cli, int& status) {
       "Each subject has a pegged identification and one trial for each condition. Tables and\n"
       "figures stand next to the paper's.\n"
       "Example: stillhand study --subjects 12 --seed 1 --out study1");
-  study->add_option("--out", words->out, "folder for report, figures and numbers")->required();
-  add_protocol_options(*study, record->options, *words);
-  add_subject_options(*study, record->options, *words);
+  study->add_option("--out", arguments->out, "folder for report, figures and numbers")->required();
+  add_protocol_options(*study, record->options, *arguments);
+  add_subject_options(*study, record->options, *arguments);
   study
       ->add_option("--threads", record->options.threads,
                    "number of threads, 0: one per core; the results do not depend on it")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   study
-      ->add_flag("--explain-paper", words->explain_paper,
+      ->add_flag("--explain-paper", arguments->explain_paper,
                  "instead of a study: looks for causes of the paper's Tables I and II")
       ->excludes("--population")
       ->excludes("--conditions")
@@ -191,7 +191,7 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--answer-wait")
       ->excludes("--undeclared-effect");
   study
-      ->add_flag("--calibrate", words->calibrate,
+      ->add_flag("--calibrate", arguments->calibrate,
                  "instead of a study: calibrates the population to A and B of the paper's Table I "
                  "and writes it to the file --out")
       ->excludes("--explain-paper")
@@ -202,7 +202,7 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--answer-wait")
       ->excludes("--undeclared-effect");
   CLI::Option* mitigations = study->add_option(
-      "--mitigations", words->campaign.mitigations,
+      "--mitigations", arguments->campaign.mitigations,
       "instead of a study: the table of mitigations, each in every task and motion and with own,\n"
       "average and another's model: all, or names with commas, for example signal,force,damping;\n"
       "48 subjects and trials of 60 s unless these are given");
@@ -211,7 +211,7 @@ void add_study_command(CLI::App& cli, int& status) {
         "--answer-wait", "--undeclared-effect", "--explain-paper", "--calibrate"}) {
     mitigations->excludes(name);
   }
-  add_sessions_option(*study, *words);
+  add_sessions_option(*study, *arguments);
   add_plan_options(*study, record->plan_dz);
   add_people_options(*study, *record);
   for (const char* name : {"--plan", "--plan-effect", "--diagnose", "--simulated"}) {
@@ -223,33 +223,34 @@ void add_study_command(CLI::App& cli, int& status) {
   settings::in_group(*study, "Recorded people",
                      {"--sessions", "--plan", "--plan-effect", "--diagnose", "--simulated"});
   settings::in_group(*study, "Research", {"--explain-paper", "--calibrate", "--mitigations"});
-  study->callback([record, words, &status, study] {
+  study->callback([record, arguments, &status, study] {
     record->options.protocol.conditions =
-        session::parse_conditions(words->conditions, session::kStudyConditions);
+        session::parse_conditions(arguments->conditions, session::kStudyConditions);
     // The set of conditions defines the study, not the order in which they are named.
     std::sort(record->options.protocol.conditions.begin(),
               record->options.protocol.conditions.end());
-    if (!words->population.empty()) {
+    if (!arguments->population.empty()) {
       record->options.population =
-          settings::load<population::Population>(words->population, "population");
+          settings::load<population::Population>(arguments->population, "population");
     }
     record->command_line = report::command_line();
-    if (!words->sessions.empty() && !words->population.empty() && !record->simulate) {
-      throw ConfigError("--population", words->population.string(),
+    if (!arguments->sessions.empty() && !arguments->population.empty() && !record->simulate) {
+      throw ConfigError("--population", arguments->population.string(),
                         "--simulated with it: recorded people have no population");
     }
-    if (study->count("--mitigations") > 0 && words->campaign.mitigations.empty()) {
+    if (study->count("--mitigations") > 0 && arguments->campaign.mitigations.empty()) {
       throw ConfigError("--mitigations", "nothing", "all, or names with commas");
     }
     const bool subjects_given = study->count("--subjects") > 0;
-    words->campaign.subjects_given = subjects_given;
-    words->campaign.trial_given = study->count("--trial-seconds") > 0;
-    status = !words->campaign.mitigations.empty()
-                 ? run_campaign_command(*record, words->campaign, words->out)
-             : words->explain_paper     ? explain(*record, *words, subjects_given)
-             : words->calibrate         ? run_calibration(*record, *words, subjects_given)
-             : !words->sessions.empty() ? run_recorded(*record, words->sessions, words->out)
-                                        : run_whole(*record, words->out);
+    arguments->campaign.subjects_given = subjects_given;
+    arguments->campaign.trial_given = study->count("--trial-seconds") > 0;
+    status = !arguments->campaign.mitigations.empty()
+                 ? run_campaign_command(*record, arguments->campaign, arguments->out)
+             : arguments->explain_paper ? explain(*record, *arguments, subjects_given)
+             : arguments->calibrate     ? run_calibration(*record, *arguments, subjects_given)
+             : !arguments->sessions.empty()
+                 ? run_recorded(*record, arguments->sessions, arguments->out)
+                 : run_whole(*record, arguments->out);
   });
 }
 

@@ -175,7 +175,7 @@ Trial DriveLoop::next_trial(double seconds) {
   return trial;
 }
 
-DriveOutcome DriveLoop::drive(double seconds, bool cancel) {
+DriveOutcome DriveLoop::run(double seconds, bool cancel) {
   const Trial trial = next_trial(seconds);
   driven_.arm({}, trial, true);
   ahead_.fill(last_command_);

@@ -66,7 +66,7 @@ class DriveLoop {
   /// The model of condition C.  @throws ConfigError when the canceller refuses it.
   void use_model(const identification::FeedthroughModel& model);
   /// One drive: ramps of one second, then `seconds`.
-  DriveOutcome drive(double seconds, bool cancel);
+  DriveOutcome run(double seconds, bool cancel);
 
  private:
   struct Now {

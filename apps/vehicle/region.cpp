@@ -126,7 +126,7 @@ Region map_region(const RegionOptions& given,
     configs.driven.vehicle.gain_m_s2_rad = run.gain_m_s2_rad;
     DriveLoop loop(configs, drive_seed(options, k));
     loop.use_model(hands[static_cast<std::size_t>(run.subject)].model);
-    run.outcome = loop.drive(options.drive_s, run.cancel);
+    run.outcome = loop.run(options.drive_s, run.cancel);
   };
   complete = runtime::run_jobs(region.runs.size(), threads, drive, [&](std::size_t done) {
     const double share = static_cast<double>(done) / static_cast<double>(region.runs.size());

@@ -21,17 +21,17 @@
 namespace stillhand::vehicle {
 namespace {
 
-struct Words {
+struct Arguments {
   RegionOptions options;
   std::filesystem::path out;
 };
 
-int run(const Words& words) {
+int run(const Arguments& arguments) {
   runtime::Stop stop;
-  RegionOptions options = words.options;
+  RegionOptions options = arguments.options;
   if (options.gains_m_s2_rad.empty()) options.gains_m_s2_rad = geometric_gains();
   preset(options.preset);  // an unknown name is refused before the folder is made
-  report::StagedFolder folder(words.out);
+  report::StagedFolder folder(arguments.out);
   report::require_gnuplot();
   report::ProgressLine progress;
   const Region region = map_region(options, [&](const char* step, double done) {
@@ -57,8 +57,8 @@ int run(const Words& words) {
 }  // namespace
 
 void add_vehicle_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
-  RegionOptions& options = words->options;
+  auto arguments = std::make_shared<Arguments>();
+  RegionOptions& options = arguments->options;
   CLI::App* verb = cli.add_subcommand(
       "vehicle",
       "Maps the stable region of the loop through vehicle and hand, in one process: the stick\n"
@@ -66,7 +66,7 @@ void add_vehicle_command(CLI::App& cli, int& status) {
       "identified; the critical gain is predicted, and the whole grid of gain and delay is\n"
       "driven, without and with cancellation. A growing oscillation ends a drive.\n"
       "Example: stillhand vehicle --preset excavator --subjects 6 --out region");
-  verb->add_option("--out", words->out, "folder for figure, report and numbers")
+  verb->add_option("--out", arguments->out, "folder for figure, report and numbers")
       ->required()
       ->check(settings::check_name);
   verb->add_option("--preset", options.preset,
@@ -92,7 +92,7 @@ void add_vehicle_command(CLI::App& cli, int& status) {
                    "number of threads, 0: one per core; the results do not depend on it")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-  verb->callback([words, &status] { status = run(*words); });
+  verb->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::vehicle

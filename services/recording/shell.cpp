@@ -38,13 +38,13 @@ Shell::Shell(runtime::Service& service, const KeepOptions& keep, const OfExperim
     if (trial.phase != TrialPhase::kIdle) {
       end_tick_ = trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
     }
-    if (is_running(control.session())) tell_file();
+    if (is_running(control.session())) report_file();
   });
 }
 
 // Once this session knows its sources: it believes nobody else.
-void Shell::tell_file() {
-  if (!service_.options().one_session || std::exchange(told_file_, true)) return;
+void Shell::report_file() {
+  if (!service_.options().one_session || std::exchange(reported_file_, true)) return;
   const std::string file = std::filesystem::absolute(service_.options().out).string();
   service_.note_event(stillhand_msgs::EVENT_NOTE,
                       (std::string(topics::kRecordingNote) + file).c_str());

@@ -23,7 +23,7 @@ class Shell {
 
  private:
   void subscribe(const topics::Topic& topic);
-  void tell_file();
+  void report_file();
   void watch();
   void keep_trial();
   void see_others_out();
@@ -31,7 +31,7 @@ class Shell {
   runtime::Service& service_;
   std::optional<BusRecording> recording_;  // constructed last, so a refusal leaves no file
   std::atomic<std::uint64_t> unattributed_{0};
-  bool told_file_ = false;          // receiving thread only
+  bool reported_file_ = false;      // receiving thread only
   std::atomic<Tick> end_tick_{-1};  ///< of the newest trial, ramps included; -1: none yet
   std::atomic<Tick> rig_tick_{-1};
   Tick kept_tick_ = -1;  ///< the end of the newest trial that is on the disk

@@ -33,7 +33,7 @@ inline Bus::Options outsider(const std::string& verb, std::uint32_t domain,
 }
 
 /// The side that carries out commands; its status names the answered command and the answer.
-/// next(), answer() and tell() from one thread.
+/// next(), answer() and publish() from one thread.
 template <typename Command, typename Status>
 class RemoteControl {
  public:
@@ -67,7 +67,7 @@ class RemoteControl {
   /// At least one command was answered.
   [[nodiscard]] bool asked() const noexcept { return !answers_.empty(); }
   /// Publishes a status with each of the newest answers.
-  void tell(Status status) {
+  void publish(Status status) {
     if (answers_.empty()) statuses_.write(status);
     for (const auto& [request, refusal] : answers_) {
       constexpr std::size_t kRoom = 99;  // string<100> in idl/recording.idl
@@ -79,11 +79,11 @@ class RemoteControl {
   }
   /// The last status, repeated for half a second: it is best effort, and the sender of a stop may
   /// not be matched with it yet.
-  void tell_last(const Status& status) {
+  void publish_last(const Status& status) {
     constexpr int kTimes = 10;
     constexpr std::int64_t kPause_ns = 50'000'000;
     for (int i = 0; i < kTimes; ++i) {
-      tell(status);
+      publish(status);
       sleep_until_ns(monotonic_ns() + kPause_ns);
     }
   }

@@ -88,7 +88,7 @@ void Reporter::start() {
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
-void Reporter::tell(const Note& note) noexcept {
+void Reporter::publish(const Note& note) noexcept {
   if (!queue_.bounded_push(note)) dropped_.fetch_add(1, std::memory_order_relaxed);
 }
 

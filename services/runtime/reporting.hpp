@@ -42,7 +42,7 @@ class Reporter {
   /// Publishes the waiting events and ends the thread; nothing is published afterwards.
   void stop();
   /// Any thread; drops the note, and counts it, when 256 wait.
-  void tell(const Note& note) noexcept;
+  void publish(const Note& note) noexcept;
 
  private:
   void work(const std::stop_token& stop);

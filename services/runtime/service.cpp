@@ -87,7 +87,7 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
               {}};
     std::memcpy(note.peer, incident.peer, sizeof(note.peer));
     std::strncpy(note.text, incident.policy, sizeof(note.text) - 1);
-    reporting_->reporter.tell(note);
+    reporting_->reporter.publish(note);
     if (on_incident_) on_incident_(incident);
   };
   bus_ = std::make_unique<Bus>(std::move(bus_options));
@@ -150,7 +150,7 @@ void Service::note_event(stillhand_msgs::EventKind kind, const char* text, doubl
                          stillhand_msgs::EventCode code) noexcept {
   Note note{kind, code, nullptr, tick_.load(std::memory_order_relaxed), by_us, {}, {}};
   std::strncpy(note.text, text, sizeof(note.text) - 1);
-  reporting_->reporter.tell(note);
+  reporting_->reporter.publish(note);
 }
 
 void Service::run() {

@@ -127,13 +127,13 @@ bool EmulatedLoop::hear_orders(std::int64_t now_ns) {
   if (count <= 0) return false;
   orders_.append(bytes.data(), static_cast<std::size_t>(count));
   for (std::size_t end = 0; (end = orders_.find('\n')) != std::string::npos;) {
-    obey(orders_.substr(0, end), now_ns);
+    execute(orders_.substr(0, end), now_ns);
     orders_.erase(0, end + 1);
   }
   return true;
 }
 
-void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
+void EmulatedLoop::execute(const std::string& line, std::int64_t now_ns) {
   std::istringstream words(line);
   std::string word;
   double value = 1.0;
@@ -155,14 +155,14 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
   fault_ns_ = now_ns;
   fault_torque_n_m_ = drive_.torque_n_m();
   if (word == "mark") return;  // a fault that is made elsewhere begins now
-  if (!obey_platform(word, value) && !obey_laboratory(word, value) &&
-      !obey_drive(word, value, now_ns) && !obey_way(word, value) && !obey_iio(word, value) &&
-      !obey_indicator(word, value)) {
+  if (!execute_platform(word, value) && !execute_laboratory(word, value) &&
+      !execute_drive(word, value, now_ns) && !execute_way(word, value) &&
+      !execute_iio(word, value) && !execute_indicator(word, value)) {
     std::fprintf(stderr, "emulated_laboratory: no order \"%s\"\n", word.c_str());
   }
 }
 
-bool EmulatedLoop::obey_platform(const std::string& word, double value) {
+bool EmulatedLoop::execute_platform(const std::string& word, double value) {
   if (word == "platform_silent") {
     platform_silent_ = value != 0.0;
   } else if (word == "platform_loses") {
@@ -175,7 +175,7 @@ bool EmulatedLoop::obey_platform(const std::string& word, double value) {
   return true;
 }
 
-bool EmulatedLoop::obey_laboratory(const std::string& word, double value) {
+bool EmulatedLoop::execute_laboratory(const std::string& word, double value) {
   if (word == "slip") {
     laboratory_.slip(value);
   } else if (word == "saturate") {
@@ -200,7 +200,7 @@ bool EmulatedLoop::obey_laboratory(const std::string& word, double value) {
   return true;
 }
 
-bool EmulatedLoop::obey_drive(const std::string& word, double value, std::int64_t now_ns) {
+bool EmulatedLoop::execute_drive(const std::string& word, double value, std::int64_t now_ns) {
   if (word == "reboot") {
     drive_.reboot(now_ns);
   } else if (word == "fault") {
@@ -217,7 +217,7 @@ bool EmulatedLoop::obey_drive(const std::string& word, double value, std::int64_
   return true;
 }
 
-bool EmulatedLoop::obey_iio(const std::string& word, double value) {
+bool EmulatedLoop::execute_iio(const std::string& word, double value) {
   if (!iio_) return false;
   if (word == "iio_starved") {
     iio_->starve(value != 0.0);
@@ -229,7 +229,7 @@ bool EmulatedLoop::obey_iio(const std::string& word, double value) {
   return true;
 }
 
-bool EmulatedLoop::obey_indicator(const std::string& word, double value) {
+bool EmulatedLoop::execute_indicator(const std::string& word, double value) {
   if (!indicator_) return false;
   if (word == "indicator_silent") {
     indicator_->serial().mischief.silent = value != 0.0;
@@ -243,7 +243,7 @@ bool EmulatedLoop::obey_indicator(const std::string& word, double value) {
   return true;
 }
 
-bool EmulatedLoop::obey_way(const std::string& word, double value) {
+bool EmulatedLoop::execute_way(const std::string& word, double value) {
   const std::map<std::string, bool*> switches{
       {"silent", &serial_.mischief.silent},       {"deaf", &serial_.mischief.deaf},
       {"garbage", &serial_.mischief.garbage},     {"damaged", &serial_.mischief.damaged},

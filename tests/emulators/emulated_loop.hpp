@@ -46,13 +46,13 @@ class EmulatedLoop {
   void hear_platform(std::int64_t now_ns);
   /// @returns false at the end of standard input
   bool hear_orders(std::int64_t now_ns);
-  void obey(const std::string& line, std::int64_t now_ns);
-  bool obey_drive(const std::string& word, double value, std::int64_t now_ns);
-  bool obey_platform(const std::string& word, double value);
-  bool obey_laboratory(const std::string& word, double value);
-  bool obey_indicator(const std::string& word, double value);
-  bool obey_iio(const std::string& word, double value);
-  bool obey_way(const std::string& word, double value);
+  void execute(const std::string& line, std::int64_t now_ns);
+  bool execute_drive(const std::string& word, double value, std::int64_t now_ns);
+  bool execute_platform(const std::string& word, double value);
+  bool execute_laboratory(const std::string& word, double value);
+  bool execute_indicator(const std::string& word, double value);
+  bool execute_iio(const std::string& word, double value);
+  bool execute_way(const std::string& word, double value);
   void report(std::int64_t now_ns) const;
 
   std::unique_ptr<DriveEmulator> made_;

@@ -251,7 +251,7 @@ std::vector<std::uint8_t> MoteusEmulator::frame(const std::vector<std::uint8_t>&
         reply.insert(reply.end(), {0x31, static_cast<std::uint8_t>(unknown_), 1});
         continue;
       }
-      if (!talked && command.mode) obey(command, now_ns);  // the reply shows what the frame did
+      if (!talked && command.mode) execute(command, now_ns);  // the reply shows what the frame did
       talked = true;
       reply.push_back(static_cast<std::uint8_t>(0x20u | kind << 2 | (count <= 3 ? count : 0u)));
       if (count > 3) reply.push_back(static_cast<std::uint8_t>(count));
@@ -272,12 +272,12 @@ std::vector<std::uint8_t> MoteusEmulator::frame(const std::vector<std::uint8_t>&
       break;
     }
   }
-  if (!talked && command.mode) obey(command, now_ns);
+  if (!talked && command.mode) execute(command, now_ns);
   if (!command.mode && talked) ++record_.queries;
   return reply;
 }
 
-void MoteusEmulator::obey(const Command& command, std::int64_t now_ns) {
+void MoteusEmulator::execute(const Command& command, std::int64_t now_ns) {
   if (*command.mode == 0) {
     ++record_.stops;
     mode_ = fault_ = 0;

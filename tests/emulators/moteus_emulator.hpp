@@ -43,7 +43,7 @@ class MoteusEmulator final : public DriveEmulator {
   struct Command;
   std::string answer(std::string line, std::int64_t now_ns);
   std::vector<std::uint8_t> frame(const std::vector<std::uint8_t>& payload, std::int64_t now_ns);
-  void obey(const Command& command, std::int64_t now_ns);
+  void execute(const Command& command, std::int64_t now_ns);
   void torque(std::int64_t now_ns);
   void console(std::string_view text);
   [[nodiscard]] double of_register(std::uint32_t address, std::int64_t now_ns) const;

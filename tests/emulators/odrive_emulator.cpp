@@ -130,7 +130,7 @@ std::string OdriveEmulator::answer(std::string line, std::int64_t now_ns) {
     line.resize(star);
   }
   std::string answers;
-  const std::string text = obey(line, now_ns);
+  const std::string text = execute(line, now_ns);
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     std::string each = text.substr(at, end - at);
@@ -141,7 +141,7 @@ std::string OdriveEmulator::answer(std::string line, std::int64_t now_ns) {
   return answers;
 }
 
-std::string OdriveEmulator::obey(const std::string& line, std::int64_t now_ns) {
+std::string OdriveEmulator::execute(const std::string& line, std::int64_t now_ns) {
   const std::vector<std::string> words = words_of(line);
   if (words.empty()) return "unknown command";
   const std::string& verb = words[0];

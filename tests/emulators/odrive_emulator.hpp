@@ -45,7 +45,7 @@ class OdriveEmulator final : public DriveEmulator {
   static constexpr int kClosedLoop = 8;
 
   std::string answer(std::string line, std::int64_t now_ns);
-  std::string obey(const std::string& command, std::int64_t now_ns);
+  std::string execute(const std::string& command, std::int64_t now_ns);
   std::string value_of(const std::string& name, std::int64_t now_ns) const;
   void write(const std::string& name, const std::string& value, std::int64_t now_ns);
   void request(int state, std::int64_t now_ns);

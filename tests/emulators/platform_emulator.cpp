@@ -56,8 +56,9 @@ std::vector<std::uint8_t> PlatformEmulator::take(std::span<const std::uint8_t> d
   asked_ = command.sequence;
   if (owner_ != 0 && !wish(now_ns)) owner_ = 0;
   if (owner_ == 0 || owner_ == command.token)
-    obey(command.order == 1, command.token, now_ns,
-         {command.position_m, command.velocity_m_s, command.acceleration_m_s2}, command.valid_ms);
+    execute(command.order == 1, command.token, now_ns,
+            {command.position_m, command.velocity_m_s, command.acceleration_m_s2},
+            command.valid_ms);
 
   StatePacket state{};
   std::memcpy(state.magic, "SHPS", 4);
@@ -76,8 +77,8 @@ std::vector<std::uint8_t> PlatformEmulator::take(std::span<const std::uint8_t> d
   return reply;
 }
 
-void PlatformEmulator::obey(bool follow, std::uint32_t token, std::int64_t now_ns,
-                            const PlatformWish& wish, std::uint32_t valid_ms) {
+void PlatformEmulator::execute(bool follow, std::uint32_t token, std::int64_t now_ns,
+                               const PlatformWish& wish, std::uint32_t valid_ms) {
   if (follow_ && follow) {
     most_step_m_ = std::max(most_step_m_, std::abs(wish.position_m - wish_.position_m));
   }

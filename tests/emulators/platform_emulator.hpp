@@ -37,8 +37,8 @@ class PlatformEmulator {
   [[nodiscard]] double most_step_m() const { return most_step_m_; }
 
  private:
-  void obey(bool follow, std::uint32_t token, std::int64_t now_ns, const PlatformWish& wish,
-            std::uint32_t valid_ms);
+  void execute(bool follow, std::uint32_t token, std::int64_t now_ns, const PlatformWish& wish,
+               std::uint32_t valid_ms);
 
   SeatState seat_;
   PlatformWish wish_{};

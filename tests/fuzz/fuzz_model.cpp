@@ -18,7 +18,7 @@ using namespace stillhand;
 // Longer than a model needs to settle and to fade in.
 constexpr Tick kTicks = 600;
 
-void drive(const cancellation::ControlModel& model) {
+void exercise(const cancellation::ControlModel& model) {
   const cancellation::Config config;
   cancellation::Countermeasure canceller(config, {.force = true});
   if (canceller.load_model(model) != cancellation::Refusal::kNone) return;
@@ -46,11 +46,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const auto message = std::as_bytes(std::span(bytes + 1, size - 1));
   if (bytes[0] % 2 == 0) {
     stillhand_msgs::AugmentedModel model;
-    if (from_cdr(message, model)) drive(cancellation::from_idl(model));
+    if (from_cdr(message, model)) exercise(cancellation::from_idl(model));
   } else {
     stillhand_msgs::FeedthroughModel model;
     if (from_cdr(message, model)) {
-      drive(cancellation::control_model(cancellation::from_idl(model)));
+      exercise(cancellation::control_model(cancellation::from_idl(model)));
     }
   }
   return 0;

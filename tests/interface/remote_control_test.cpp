@@ -77,7 +77,7 @@ TEST(RemoteControlTest, EachRequestOfTwoAskersIsCarriedOutOnceAndAnswered) {
   EXPECT_THAT(done, testing::ElementsAre(1, 2, 3));
   // Best effort, so until they are there.
   EXPECT_TRUE(eventually([&] {
-    sut.tell({});
+    sut.publish({});
     return a.has_answer(1) && b.has_answer(2) && a.has_answer(3);
   }));
 }

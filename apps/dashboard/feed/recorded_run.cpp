@@ -71,7 +71,7 @@ RecordedRun::RecordedRun(const std::string& file, const FeedOptions& options,
     }
     return true;
   }));
-  opened_.tell_loss(playing.messages);
+  opened_.report_loss(playing.messages);
   if (playing.messages == 0) throw ConfigError(file, "no message", "a recording of a session");
 }
 

@@ -49,13 +49,13 @@ HttpConnection::HttpConnection(tcp::socket socket, HttpClients& clients)
 }
 
 HttpConnection::~HttpConnection() {
-  stand_nowhere();
+  leave_list();
   if (streams_) --clients_.streams;
   --clients_.connections;
 }
 
 void HttpConnection::read() {
-  stand_in(known_ ? clients_.known : clients_.asking);
+  join_list(known_ ? clients_.known : clients_.asking);
   parser_.emplace();
   parser_->header_limit(kMostHeader);
   parser_->body_limit(kMostBody);
@@ -73,18 +73,18 @@ void HttpConnection::send(const std::shared_ptr<const std::string>& frame) {
 }
 
 void HttpConnection::close() {
-  stand_nowhere();
+  leave_list();
   error_code ignored;
   stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
   stream_.close();
 }
 
-void HttpConnection::stand_in(std::list<HttpConnection*>& list) {
-  stand_nowhere();
+void HttpConnection::join_list(std::list<HttpConnection*>& list) {
+  leave_list();
   place_.emplace(&list, list.insert(list.end(), this));
 }
 
-void HttpConnection::stand_nowhere() {
+void HttpConnection::leave_list() {
   if (place_) place_->first->erase(place_->second);
   place_.reset();
 }
@@ -125,7 +125,7 @@ void HttpConnection::refuse(unsigned status, const char* want) {
 }
 
 void HttpConnection::respond(const Answer& found, bool keep_alive) {
-  stand_in(clients_.answering);
+  join_list(clients_.answering);
   response_ = {};
   response_.version(11);
   response_.result(found.status);
@@ -145,7 +145,7 @@ void HttpConnection::respond(const Answer& found, bool keep_alive) {
                       if (keep_alive) return self->read();
                       error_code ignored;
                       self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-                      self->stand_in(self->clients_.leaving);
+                      self->join_list(self->clients_.leaving);
                       self->stream_.expires_after(kLeaveTime);
                       self->discard(kMostDiscarded);
                     });
@@ -162,7 +162,7 @@ void HttpConnection::discard(std::size_t most) {
 }
 
 void HttpConnection::listen() {
-  stand_nowhere();
+  leave_list();
   streams_ = true;  // from now on, also while its header is under way
   ++clients_.streams;
   header_.emplace();

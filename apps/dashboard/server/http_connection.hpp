@@ -55,8 +55,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   static constexpr std::size_t kMostHeader = 8192;
   static constexpr std::size_t kMostBody = 4096;
 
-  void stand_in(std::list<HttpConnection*>& list);
-  void stand_nowhere();
+  void join_list(std::list<HttpConnection*>& list);
+  void leave_list();
   void answer_read(boost::system::error_code error);
   void refuse(unsigned status, const char* want);
   void respond(const Answer& found, bool keep_alive);

@@ -10,7 +10,7 @@
 
 namespace stillhand::study {
 
-int run_campaign_command(const StudyRecord& record, const CampaignWords& words,
+int run_campaign_command(const StudyRecord& record, const CampaignArguments& words,
                          const std::filesystem::path& out) {
   CampaignOptions options;
   options.mitigations = mitigations_named(words.mitigations);

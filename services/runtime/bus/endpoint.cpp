@@ -73,11 +73,11 @@ void Endpoint::note_match(const ertps::InstanceHandle_t& peer, int change) {
 }
 
 void Endpoint::note_incompatible(std::uint32_t policy) {
-  tell(BusIncident::Kind::kIncompatibleQos, "", 0.0, policy_name(policy));
+  note_incident(BusIncident::Kind::kIncompatibleQos, "", 0.0, policy_name(policy));
 }
 
-void Endpoint::tell(BusIncident::Kind kind, const std::string& peer, double by_us,
-                    const char* policy) const {
+void Endpoint::note_incident(BusIncident::Kind kind, const std::string& peer, double by_us,
+                             const char* policy) const {
   if (!options_.on_incident) return;
   BusIncident incident{kind, &topic_, {}, by_us, policy};
   peer.copy(incident.peer, sizeof(incident.peer) - 1);
@@ -157,8 +157,8 @@ void ReaderEndpoint::on_data_available(edds::DataReader* source) {
     samples_.fetch_add(1, std::memory_order_relaxed);
     last_arrival_ns_.store(arrival.received_ns, std::memory_order_relaxed);
     if (&topic_ == &topics::kServiceStatus && peers_.note_sample(info.publication_handle)) {
-      tell(BusIncident::Kind::kLivelinessRecovered, peers_.service_of(info.publication_handle),
-           0.0);
+      note_incident(BusIncident::Kind::kLivelinessRecovered,
+                    peers_.service_of(info.publication_handle), 0.0);
     }
     if (topic_.pattern == topics::Pattern::kStream1khz && clock.tick >= 0) {
       supervise(clock.tick, clock.stamp_ns, arrival.received_ns);
@@ -171,10 +171,10 @@ void ReaderEndpoint::supervise(Tick tick, std::int64_t sent_ns, std::int64_t arr
   const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
   const auto verdict = monitor_.step(tick, difference_ns(sent_ns, ahead_ns), arrived_ns);
   if (verdict.lost > 0) {
-    tell(BusIncident::Kind::kTicksLost, "", static_cast<double>(verdict.lost));
+    note_incident(BusIncident::Kind::kTicksLost, "", static_cast<double>(verdict.lost));
   }
   if (verdict.late_by_us > 0) {
-    tell(BusIncident::Kind::kCycleMissed, "", static_cast<double>(verdict.late_by_us));
+    note_incident(BusIncident::Kind::kCycleMissed, "", static_cast<double>(verdict.late_by_us));
   }
   // A tenth of a second between snapshots: percentiles cost 200 additions.
   if (monitor_.samples() % 100 == 0) {
@@ -206,7 +206,7 @@ void ReaderEndpoint::on_subscription_matched(edds::DataReader* /*reader*/,
   if (status.current_count_change < 0 && &topic_ == &topics::kServiceStatus) {
     const std::string peer = peers_.service_of(status.last_publication_handle);
     if (peers_.set_alive(status.last_publication_handle, false)) {
-      tell(BusIncident::Kind::kLivelinessLost, peer, 0.0);
+      note_incident(BusIncident::Kind::kLivelinessLost, peer, 0.0);
     }
   }
 }
@@ -217,7 +217,7 @@ void ReaderEndpoint::on_requested_deadline_missed(
   if (!supervising_.load(std::memory_order_relaxed) || !has_living_writer()) return;
   deadline_misses_.fetch_add(status.total_count_change, std::memory_order_relaxed);
   const std::int64_t silent_ns = monotonic_ns() - last_arrival_ns_.load(std::memory_order_relaxed);
-  tell(BusIncident::Kind::kDeadlineMissed, "", static_cast<double>(silent_ns) * 1e-3);
+  note_incident(BusIncident::Kind::kDeadlineMissed, "", static_cast<double>(silent_ns) * 1e-3);
 }
 
 // The timer is armed by a sample, so without any word of liveliness (Peers::note_sample) a writer
@@ -241,8 +241,9 @@ void ReaderEndpoint::on_liveliness_changed(edds::DataReader* /*reader*/,
   if (&topic_ == &topics::kServiceStatus) {
     if (!peers_.set_alive(status.last_publication_handle, alive)) return;
   }
-  tell(alive ? BusIncident::Kind::kLivelinessRecovered : BusIncident::Kind::kLivelinessLost, peer,
-       0.0);
+  note_incident(
+      alive ? BusIncident::Kind::kLivelinessRecovered : BusIncident::Kind::kLivelinessLost, peer,
+      0.0);
 }
 
 void ReaderEndpoint::on_requested_incompatible_qos(

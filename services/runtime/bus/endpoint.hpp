@@ -51,8 +51,8 @@ class Endpoint {
  protected:
   void note_match(const ertps::InstanceHandle_t& peer, int change);
   void note_incompatible(std::uint32_t policy);
-  void tell(BusIncident::Kind kind, const std::string& peer, double by_us,
-            const char* policy = "") const;
+  void note_incident(BusIncident::Kind kind, const std::string& peer, double by_us,
+                     const char* policy = "") const;
   [[nodiscard]] std::uint32_t matched_count() const;
 
   const topics::Topic& topic_;

@@ -76,7 +76,7 @@ struct Tap::Impl final : DiscoveryListener {
   void on_writer(const AnnouncedWriter& announced) override;
   void open_readers(const std::stop_token& stop);
   void open_reader(const ReaderKey& key, const std::string& type);
-  void tell(std::string line);
+  void report(std::string line);
 
   Options options;
   FoundWriters writers;
@@ -123,8 +123,8 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
         status.last_policy_id == edds::DURABILITY_QOS_POLICY_ID) {
       return;
     }
-    owner.tell(key.first + ": the QoS of a writer matches no reader (QoS policy " +
-               std::to_string(status.last_policy_id) + ")");
+    owner.report(key.first + ": the QoS of a writer matches no reader (QoS policy " +
+                 std::to_string(status.last_policy_id) + ")");
   }
 
   Impl& owner;
@@ -174,20 +174,20 @@ void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
     topics[name] = participant->create_topic(name, type, edds::TOPIC_QOS_DEFAULT);
   }
   if (topics[name] == nullptr || topics[name]->get_type_name() != type) {
-    return tell(name + ": the topic has two types; " + type + " is not recorded");
+    return report(name + ": the topic has two types; " + type + " is not recorded");
   }
   edds::DataReaderQos qos;
   if (!ok(subscriber->get_datareader_qos_from_profile(profile_of(key.second), qos))) {
-    return tell(name + ": no data_reader profile \"" + profile_of(key.second) + "\" in " +
-                options.profiles.string());
+    return report(name + ": no data_reader profile \"" + profile_of(key.second) + "\" in " +
+                  options.profiles.string());
   }
   auto reader = std::make_unique<Reader>(*this, key);
   reader->reader = subscriber->create_datareader(topics[name], qos, reader.get());
-  if (reader->reader == nullptr) return tell(name + ": Fast DDS refused a reader");
+  if (reader->reader == nullptr) return report(name + ": Fast DDS refused a reader");
   readers.push_back(std::move(reader));
 }
 
-void Tap::Impl::tell(std::string line) {
+void Tap::Impl::report(std::string line) {
   const std::lock_guard lock(mutex);
   if (std::find(trouble.begin(), trouble.end(), line) == trouble.end()) {
     trouble.push_back(std::move(line));
