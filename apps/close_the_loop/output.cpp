@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/report/or_null.hpp"
+#include "apps/report/plot/figure_table.hpp"
 #include "apps/report/text.hpp"
 #include "apps/session/paper_table.hpp"
 #include "services/rig/sealed_file.hpp"
@@ -316,7 +318,7 @@ std::vector<std::string> every_name() {
                                  "model.json",        kControlModelFile, rig::kSealedFile,
                                  rig::kCommitmentFile};
   for (const char* figure : {"tracking", "force", "adaptation", "motion", "left"}) {
-    for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
+    for (std::string& name : report::figure_files(figure)) names.push_back(std::move(name));
   }
   return names;
 }

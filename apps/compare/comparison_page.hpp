@@ -8,8 +8,8 @@
 namespace stillhand::compare {
 
 /// Files that write_report() writes.
-inline constexpr const char* kReportFiles[] = {"comparison.html", "comparison.json",
-                                               "comparison.svg", "comparison.png"};
+inline constexpr const char* kReportFiles[] = {
+    "comparison.html", "comparison.json", "comparison.svg", "comparison.png", "comparison.csv"};
 
 /// Page and figure in a folder that exists; comparison.json is the caller's.
 /// @throws as report::render()

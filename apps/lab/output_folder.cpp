@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/report/plot/figure_table.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
 
@@ -21,29 +22,21 @@ namespace {
 constexpr const char* kResults[]{"session.mcap",
                                  "summary.json",
                                  "model.json",
-                                 "session.png",
-                                 "session.svg",
                                  "session.html",
                                  "screen.avi",
+                                 "report.html",
                                  "undeclared_effect.json",
                                  "undeclared_effect.sha256",
                                  "control_model.json",
-                                 "verdict.json",
-                                 "report.html",
-                                 "tracking.svg",
-                                 "tracking.png",
-                                 "force.svg",
-                                 "force.png",
-                                 "adaptation.svg",
-                                 "adaptation.png",
-                                 "motion.svg",
-                                 "motion.png",
-                                 "left.svg",
-                                 "left.png"};
+                                 "verdict.json"};
+constexpr const char* kFigures[]{"session", "tracking", "force", "adaptation", "motion", "left"};
 
 std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const char* name : kResults) files.push_back(folder / name);
+  for (const char* figure : kFigures) {
+    for (const std::string& name : report::figure_files(figure)) files.push_back(folder / name);
+  }
   for (const std::string_view service : topics::kServices) {
     files.push_back(folder / "logs" / (std::string(service) + ".log"));
   }

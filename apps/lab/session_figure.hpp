@@ -9,7 +9,7 @@
 
 namespace stillhand::lab {
 
-inline constexpr const char* kSessionFigure = "session";  ///< .png and .svg in the session's folder
+inline constexpr const char* kSessionFigure = "session";  ///< .png, .svg, .csv in the folder
 
 /// Draws what cancellation does: in each moving trial the feedthrough force next to the motor's,
 /// and the target next to the cursor.  Draws nothing when no trial moved.

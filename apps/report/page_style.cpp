@@ -64,6 +64,8 @@ th { font-weight: 600; border-bottom: 1px solid var(--text); vertical-align: bot
 tbody tr + tr td { border-top: 1px solid var(--rule); }
 .l { text-align: left; } .r { text-align: right; } .c { text-align: center; }
 .strong { font-weight: 700; }
+@media screen and (prefers-color-scheme: dark) { .card { background: #1a1a1a; }
+  .card svg { filter: invert(.9) hue-rotate(180deg); } }
 .good { color: var(--good); font-weight: 600; }
 .bad { color: var(--bad); font-weight: 600; }
 .faint { color: var(--faint); }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/report/plot/draw.hpp"
+#include "apps/report/plot/figure_table.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/participants.hpp"
 #include "apps/study/report_cells.hpp"
@@ -25,7 +26,7 @@ std::vector<std::string> every_name(const report::StagedFolder& folder) {
                                  rig::kCommitmentFile, "diagnoses.csv", "findings.csv",
                                  "simulated.csv"};
   for (const char* figure : kFigureNames) {
-    for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
+    for (std::string& name : report::figure_files(figure)) names.push_back(std::move(name));
   }
   for (const std::string& page : folder.in_place(kParticipantPage, kPageEnding, kPageLead)) {
     names.push_back(page);

@@ -319,7 +319,8 @@ std::vector<std::string> region_files() {
           "runs.csv",
           "limits.csv",
           std::string(kRegionFigure) + ".svg",
-          std::string(kRegionFigure) + ".png"};
+          std::string(kRegionFigure) + ".png",
+          std::string(kRegionFigure) + ".csv"};
 }
 
 }  // namespace stillhand::vehicle

@@ -54,8 +54,8 @@ class LabSessionTest(unittest.TestCase):
         self.assertEqual(self.left, {})
         self.assertEqual(self.lab.shared_memory_left(), set())
         self.assertEqual({path.name for path in self.lab.out.iterdir()},
-                         {"session.mcap", "summary.json", "model.json", "session.png", "session.svg", "session.html",
-                          "logs"})
+                         {"session.mcap", "summary.json", "model.json", "session.png", "session.svg", "session.csv",
+                          "session.html", "logs"})
         self.assertEqual(self.lab.errors(), [])
 
     def test_summary_has_the_contract_s_shape(self):

@@ -70,7 +70,8 @@ class StudyTest(unittest.TestCase):
         self.assertEqual(set(found["paper_chain_z"]), set(found["causes"][0]["z"]))
         self.assertEqual({path.name for path in out.iterdir()},
                          {"explanation.json", "report.html", "explain_ranking.svg", "explain_ranking.png",
-                          "explain_tables.svg", "explain_tables.png"})
+                          "explain_tables.svg", "explain_tables.png", "explain_ranking.csv",
+                          "explain_tables.csv"})
         # No table has a row wider than its heading.
         for table in (out / "report.html").read_text().split("<table")[1:]:
             head = len(re.findall("<th[ >]", table.split("</thead>")[0]))

@@ -10,6 +10,7 @@
 #include "apps/diagnose/page/report_tables.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/report/plot/draw.hpp"
+#include "apps/report/plot/figure_table.hpp"
 #include "apps/report/text.hpp"
 
 namespace stillhand::diagnose {
@@ -86,7 +87,7 @@ void add_effects(Page& page, const Evidence& evidence,
   }
   if (found.search.removed > 0) {
     page.paragraph(std::to_string(found.search.removed) +
-                   " effect(s) were removed again, because later ones explain the same.");
+                   " effect(s) were removed again: later ones explain the same.");
   }
   page.table(parameter_table(evidence));
 }
@@ -126,7 +127,8 @@ void add_search(Page& page, const Evidence& evidence) {
       "taken. Candidates far behind the best were fitted for a few steps only.");
   for (const report::Table& table : tried_tables(evidence)) page.table(table);
   const std::string silent = never_proposed(evidence.found);
-  if (!silent.empty()) page.paragraph("Nothing in the residual suggests: " + silent + ".");
+  if (!silent.empty())
+    page.paragraph("Nothing in the residual suggests these kinds: " + silent + ".");
 }
 
 }  // namespace
@@ -155,7 +157,7 @@ void write_report(const Diagnosis& found, const diagnosis::Measurement& measurem
   diagnosis_page(evidence, recordings, drawings).write(folder.path() / "report.html");
   std::vector<std::string> names{"report.html"};
   for (const std::string& name : figure_names()) {
-    for (const char* ending : {".svg", ".png"}) names.push_back(name + ending);
+    for (std::string& file : report::figure_files(name)) names.push_back(std::move(file));
   }
   folder.publish(names);
 }

@@ -21,7 +21,7 @@ report::Page diagnosis_page(const Evidence& evidence, const std::vector<std::str
                             const std::vector<report::Drawing>& drawings);
 
 /// Runs the models again on the samples that the engine used, draws, and publishes the folder:
-/// report.html, and every figure as SVG and PNG.
+/// report.html, and the figure_files() of every figure.
 /// @param measurement  the measurement that was diagnosed, as read  @param recordings  its files
 /// @throws ConfigError without gnuplot, std::runtime_error when a file cannot be written
 void write_report(const diagnosis::Diagnosis& found, const diagnosis::Measurement& measurement,

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "apps/report/plot/figure_table.hpp"
 #include "apps/report/plot/gnuplot.hpp"
 #include "apps/report/plot/gnuplot_script.hpp"
 #include "apps/report/plot/panel_layout.hpp"
@@ -97,9 +98,11 @@ std::vector<Drawing> draw(std::span<const Figure> figures) {
 
 std::vector<Drawing> render(std::span<const Figure> figures, const std::filesystem::path& folder) {
   std::vector<Drawing> drawings = draw(figures);
-  for (const Drawing& drawing : drawings) {
-    write_file(folder / (drawing.name + ".svg"), drawing.svg);
-    write_file(folder / (drawing.name + ".png"), drawing.png);
+  for (std::size_t i = 0; i < drawings.size(); ++i) {
+    const std::vector<std::string> names = figure_files(drawings[i].name);
+    write_file(folder / names[0], drawings[i].svg);
+    write_file(folder / names[1], drawings[i].png);
+    write_file(folder / names[2], figure_table(figures[i]));
   }
   return drawings;
 }

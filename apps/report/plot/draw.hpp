@@ -29,7 +29,7 @@ void require_gnuplot();
 /// @throws std::runtime_error  when gnuplot fails, with its message
 std::vector<Drawing> draw(std::span<const Figure> figures);
 
-/// As draw(), and writes each figure as NAME.svg and NAME.png in `folder`, which exists.  Each file
+/// As draw(), and writes figure_files() of each figure in `folder`, which exists.  Each file
 /// appears whole or not at all.
 /// @throws also std::runtime_error when a file cannot be written, with the file and the reason
 std::vector<Drawing> render(std::span<const Figure> figures, const std::filesystem::path& folder);

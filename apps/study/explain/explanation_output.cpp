@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "apps/report/plot/figure_table.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -25,7 +28,7 @@ void write_explanation(const Explanation& explanation, const std::string& comman
   folder.write("explanation.json", explanation_json(explanation));
   std::vector<std::string> own{"report.html", "explanation.json"};
   for (const auto& drawing : drawings) {
-    for (const char* ending : {".svg", ".png"}) own.push_back(drawing.name + ending);
+    for (std::string& name : report::figure_files(drawing.name)) own.push_back(std::move(name));
   }
   folder.publish(own);
 }

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
+#include "apps/report/plot/figure_table.hpp"
 #include "apps/study/csv_cells.hpp"
 
 namespace stillhand::study {
@@ -82,8 +84,8 @@ void write_campaign(const Campaign& campaign, const std::string& command_line,
   campaign_page(campaign, command_line, drawings).write(folder.path() / "report.html");
   std::vector<std::string> own{"report.html", "mitigations.csv", "mitigation_people.csv"};
   for (const char* task : kTrialTaskNames) {
-    for (const char* ending : {".svg", ".png"}) {
-      own.push_back(fmt::format("mitigations_{}{}", task, ending));
+    for (std::string& name : report::figure_files(fmt::format("mitigations_{}", task))) {
+      own.push_back(std::move(name));
     }
   }
   folder.publish(own);

@@ -17,6 +17,7 @@
 
 #include "apps/diagnose/page/effect_numbers.hpp"
 #include "apps/diagnose/page/evidence.hpp"
+#include "apps/report/plot/figure_table.hpp"
 #include "tests/unit/diagnose/sample_recordings.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
@@ -109,10 +110,8 @@ TEST_F(DiagnosisReportTest, EverySectionAndFigureIsThere) {
   }
   for (const char* name : {"prediction", "residual_spectra", "effect_1", "residual_over_time",
                            "autocorrelation", "partial_coherence", "detections"}) {
-    for (const char* ending : {".svg", ".png"}) {
-      EXPECT_TRUE(
-          std::filesystem::exists(with_friction_->folder.path() / (std::string(name) + ending)))
-          << name << ending;
+    for (const std::string& file : report::figure_files(name)) {
+      EXPECT_TRUE(std::filesystem::exists(with_friction_->folder.path() / file)) << file;
     }
     EXPECT_FALSE(
         text_of(with_friction_->folder.path() / (std::string(name) + ".svg")).find("no data") !=

@@ -159,12 +159,12 @@ TEST(DrawTest, AHostileTextIsDrawnAndNothingElse) {
   EXPECT_EQ(found, 10U);
 }
 
-TEST(DrawTest, RenderWritesBothFilesOfEachFigureAndNothingElse) {
+TEST(DrawTest, RenderWritesTheThreeFilesOfEachFigureAndNothingElse) {
   const test::TemporaryFolder folder;
   std::vector<Figure> figures{every_kind(), one_line({1, 2}), one_line({2, 1})};
   figures[2].name = "another";
   const auto sut = render(figures, folder.path());
-  EXPECT_EQ(folder.entries(), 6U);
+  EXPECT_EQ(folder.entries(), 9U);
   for (std::size_t i = 0; i < figures.size(); ++i) {
     EXPECT_EQ(sut[i].name, figures[i].name);
     std::ifstream file(folder.path() / (figures[i].name + ".svg"));
