@@ -205,13 +205,12 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   lab.protocol.conditions = session::parse_conditions("A,B,C");
   CLI::App* verb = cli.add_subcommand(
       "close-the-loop",
-      "Puts what the model lacks back into the canceller: identifies with the stick "
-      "pegged, runs A, B\n"
-      "and C with the paper's model, diagnoses the recordings, augments the model "
-      "and runs C again (C+),\n"
-      "until nothing new is found or C+ no longer improves. With --pegged it works on recordings.\n"
-      "Examples: stillhand close-the-loop --undeclared-effect 7 --out loop1\n"
-      "          stillhand close-the-loop --pegged day1.csv day2.csv --out loop2");
+      "Adds to the canceller what its model lacks. The verb identifies with the stick pegged, runs "
+      "A,\nB and C with the paper's model, diagnoses the recordings, adds the effects to the model "
+      "and runs\nC again (C+). It repeats this until it finds nothing new or C+ no longer "
+      "improves. With --pegged\nit works on recordings, without a rig.\nExamples: stillhand "
+      "close-the-loop --undeclared-effect 7 --out loop1\n          stillhand close-the-loop "
+      "--pegged day1.csv day2.csv --out loop2");
   CLI::Option* effect =
       verb->add_option(
               "--undeclared-effect", lab.undeclared_effect,

@@ -64,7 +64,7 @@ class Conversion {
   }
   void carry(const Effect& effect, const control::NotFelt& law) { treat(effect, true, law.reason); }
   void carry(const Effect& effect, const control::InputDelay& /*law*/) {
-    treat(effect, true, "the prediction comes as much later");
+    treat(effect, true, "the prediction comes later by the same time");
   }
   void carry(const Effect& effect, const control::InputMap& /*law*/) {
     treat(effect, true, "the map runs before the canceller's body");

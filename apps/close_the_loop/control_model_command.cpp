@@ -141,7 +141,7 @@ void add_control_model_command(CLI::App& cli, int& status) {
   verb->add_option("--rig", arguments->rig, "number of the rig that the model is for")
       ->capture_default_str();
   verb->add_option("--lead-ms", arguments->lead_ms,
-                   "delay of the motor [ms]: the prediction comes as much sooner")
+                   "delay of the motor [ms]; the model predicts this time ahead")
       ->check(settings::number_between(0.0, 100.0))
       ->capture_default_str();
   verb->add_flag("--as-it-is", arguments->as_it_is, "gain and phase do not adapt while it runs");

@@ -105,12 +105,12 @@ std::string lead(const LoopRecord& record) {
                             : verdict.conclusion() == kUnexplained
                                 ? "The residual has a cause that no kind explains. "
                                 : nothing_that_counts(verdict.body.options.least_force_n) + " ";
-  return lacks + "Of the tracking error that the motion costs, C restores " +
+  return lacks + "Of the tracking error that the motion causes, C removes " +
          percent(restored(record.conditions, "C", error)) + ", C' " +
          percent(restored(record.conditions, "C'", error)) + ", C+ " +
          percent(restored(record.conditions, "C+", error)) +
-         ", the paper 47 %. Of the force, C leaves " + left("C") + ", C' " + left("C'") + ", C+ " +
-         left("C+") + ". " + kept_text(record);
+         "; in the paper, C removes 47 %. The force that is left: C " + left("C") + ", C' " +
+         left("C'") + ", C+ " + left("C+") + ". " + kept_text(record);
 }
 
 void add_tracking(report::Page& page, const Conditions& conditions,
@@ -120,11 +120,10 @@ void add_tracking(report::Page& page, const Conditions& conditions,
   page.table(measures_table(conditions));
   page.table(restoration_table(conditions));
   page.paragraph(
-      "C' runs the paper's model of C, with its gain and phase followed. C+ follows as well. So "
-      "what "
-      "following does is the step from C to C', and what the model of the effect does is the step "
-      "from C' to C+. Forces, the hand's acceleration and the share that is cancelled are computed "
-      "from the rig's own truth, which no diagnosis reads.");
+      "C' runs the paper's model, and the canceller adapts the gain and the phase. C+ adapts them "
+      "too. The step from C to C' shows what adapting does; the step from C' to C+ shows what the "
+      "model of the effect does. Forces, the hand's acceleration and the cancelled share come from "
+      "the rig's own truth, which no diagnosis reads.");
 }
 
 void add_verdict(report::Page& page, const LoopResult& result,
@@ -153,8 +152,8 @@ void add_verdict(report::Page& page, const LoopResult& result,
                    number(1e3 * verdict.latency->motor_s, 1) +
                    " ms, and the load cell's reading follows the force after " +
                    number(1e3 * verdict.latency->cell_s, 1) +
-                   " ms, both by the stick's own equation. The prediction comes sooner by the "
-                   "delay of the motor.");
+                   " ms. Both come from the stick's equation of motion. The canceller predicts "
+                   "ahead by the delay of the motor.");
   }
 }
 

@@ -64,8 +64,8 @@ report::Figure figure_of(const Comparison& all) {
   report::Figure figure;
   figure.name = "comparison";
   figure.caption =
-      "Share of what the motion takes that each option restores, (B − X)/(B − A), with 95 % "
-      "(Fieller). Options by number: ";
+      "Share of the loss through motion that each option restores, (B − X)/(B − A), with its 95 % "
+      "interval (Fieller). Options by number: ";
   for (std::size_t i = 0; i < all.options.size(); ++i) {
     figure.caption += fmt::format("{}{} {}", i == 0 ? "" : "; ", i + 1, name_of(all, i));
   }
@@ -81,7 +81,7 @@ report::Figure figure_of(const Comparison& all) {
 report::Table conditions_table(const Comparison& all, std::size_t m) {
   const Metric& metric = kMetrics[m];
   report::Table table;
-  table.caption = fmt::format("{}{}: mean with 95 % of the mean", metric.words,
+  table.caption = fmt::format("{}{}: mean with its 95 % interval", metric.words,
                               *metric.unit == 0 ? "" : fmt::format(" [{}]", metric.unit));
   table.header = {"option",       "people",           "mean",
                   "restored [%]", "worse off than B", "gain of the worst person"};
@@ -149,7 +149,9 @@ report::Table contrasts_table(const Comparison& all) {
 void write_report(const Comparison& all, const std::filesystem::path& folder) {
   const report::Figure figure = figure_of(all);
   const auto drawings = report::render({{figure}}, folder);
-  report::Page page("Comparison", "What to use, for whom, and how sure that is.");
+  report::Page page(
+      "Comparison",
+      "Which condition is best for which metric, whom it harms, and how sure that is.");
   page.facts(
       {{"made by", std::string("stillhand ") + kVersion}, {"command", report::command_line()}});
   page.list(findings(all));
@@ -159,8 +161,8 @@ void write_report(const Comparison& all, const std::filesystem::path& folder) {
   page.paragraph(
       "Paired t-test where two options have the same people in the same rides (at least half of "
       "the values of A are the same, bit for bit), Welch's test otherwise; p after Holm over the "
-      "contrasts of a "
-      "metric. A simulated population is not a person, and neither is an average.");
+      "contrasts of a metric. A simulated population and an average both say nothing about one "
+      "person.");
   page.table(contrasts_table(all));
   page.write(folder / "comparison.html");
 }

@@ -37,7 +37,7 @@ std::string best_sentence(const Comparison& all, std::size_t m, std::size_t best
   if (outcome.restored.share)
     text += fmt::format("; it restores {} %", percent(*outcome.restored.share));
   if (outcome.restored.interval) {
-    text += fmt::format(" ({} to {} %) of what the motion takes",
+    text += fmt::format(" ({} to {} %) of the loss through motion",
                         percent(outcome.restored.interval->low),
                         percent(outcome.restored.interval->high));
   }
@@ -56,17 +56,18 @@ std::string sure_sentence(const Comparison& all, std::size_t m) {
   if (with_values < 2) return "No other option has a value of it.";
   if (ranking.contrasts.empty()) {
     return all.options[*ranking.best].outcomes[m].people < 2
-               ? "With one person on a side, this says nothing about others."
-               : "No other option can be tested against it: one person, or the same values.";
+               ? "With one person in an option, this says nothing about other people."
+               : "No other option can be tested against it: there is one person, or the values are "
+                 "equal.";
   }
   std::string names;
   for (const std::size_t other : ranking.as_good) {
     names += (names.empty() ? "" : "; ") + name_of(all, other);
   }
-  if (!names.empty()) return "These data do not tell it apart from: " + names + ".";
+  if (!names.empty()) return "These data do not separate it from: " + names + ".";
   const auto closest = std::ranges::min_element(ranking.contrasts, {}, &Contrast::better_by);
   return fmt::format(
-      "It is better than every other option; than the next, {}, by {} ({} to {}), {} "
+      "It is better than every other option. The next is {}: the difference is {} ({} to {}), {} "
       "after Holm, {}.",
       name_of(all, closest->other), with_unit(closest->better_by, kMetrics[m]),
       number(closest->low), number(closest->high), p_text(closest->p),

@@ -143,12 +143,12 @@ void add_deploy_command(CLI::App& cli, int& status) {
       ->required()
       ->check(settings::check_name);
   make->callback([arguments, &status] { status = run_generate(*arguments); });
-  CLI::App* check = verb->add_subcommand(
-      "check",
-      "Checks this machine as a host of the lab: address, clock, rights, buffers, ports,\n"
-      "processors, certificates, and whether there are keys at all. Each check prints one line, "
-      "with the remedy if something is\n"
-      "wrong. Exit status: 0 nothing is wrong, 1 something is wrong, 2 the inventory is refused.");
+  CLI::App* check =
+      verb->add_subcommand("check",
+                           "Checks this machine as a host of the lab: address, clock, rights, "
+                           "buffers, ports,\nprocessors, certificates and keys. Each check prints "
+                           "one line, with the remedy if something\nis wrong. Exit status: 0 "
+                           "nothing is wrong, 1 something is wrong, 2 the inventory is refused.");
   common(check);
   check->add_option("--host", arguments->host,
                     "this machine's host; by default the one whose address it has");

@@ -94,7 +94,7 @@ int run(const Arguments& arguments) {
   if (folder) std::printf("report in %s\n", arguments.report.string().c_str());
   report::say_next(arguments.report.empty()
                        ? "the same command with --report DIR draws what was found"
-                       : fmt::format("open {}", (arguments.report / "index.html").string()));
+                       : fmt::format("open {}", (arguments.report / "report.html").string()));
   report::say_next(arguments.save.empty()
                        ? "--save MODEL keeps the model, for `stillhand predict`"
                        : fmt::format("stillhand predict {} ANOTHER_RECORDING --out predicted.csv",
@@ -109,14 +109,12 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   CLI::App* verb = cli.add_subcommand(
       "diagnose",
       "Finds what the model lacks. Fits a linear model to the recording, takes the residual of "
-      "its\n"
-      "free run on samples that the fit has not seen, traces it to an effect, adds the effect, "
-      "and\n"
-      "prints the error before and after. services/diagnosis/README.md lists the kinds of effect.\n"
-      "REC: the MCAP file of a session, or a CSV, MATLAB, HDF5, ROS 2 (MCAP) or sound file with\n"
-      "columns 'name [unit]' and 't [s]', or with others and --map. Several recordings of one rig\n"
-      "are diagnosed together.\n"
-      "Example: stillhand diagnose ride.csv --input a_y --output f --json out.json --report DIR");
+      "its\nfree run on samples that the fit has not seen, traces it to an effect, adds the "
+      "effect, and\nprints the error before and after. services/diagnosis/README.md lists the "
+      "kinds of effect.\nREC: the MCAP file of a session, or a CSV, MATLAB, HDF5, ROS 2 (MCAP) or "
+      "sound file with\ncolumns 'name [unit]' and 't [s]'. For other columns, use --map. Several "
+      "recordings of one rig\nare diagnosed together.\nExample: stillhand diagnose ride.csv "
+      "--input a_y --output f --json out.json --report DIR");
   verb->add_option("REC", arguments->recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")
       ->required();
   verb->add_option("--input", arguments->options.inputs,

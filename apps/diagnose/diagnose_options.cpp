@@ -17,11 +17,11 @@ void add_diagnose_options(CLI::App& verb, diagnosis::DiagnoseOptions& options) {
                             : word == "linear" ? diagnosis::ModelClass::kLinear
                                                : diagnosis::ModelClass::kAuto;
           },
-          "baseline: arx (the paper's difference model, refined on its free-run error),\n"
-          "linear (static in the inputs: inverse dynamics), auto (the one that fits)")
+          "baseline: arx (the paper's difference model, refined on its free-run error), linear "
+          "(static in the inputs: inverse dynamics), or auto (the better one)")
       ->check(CLI::IsMember({"auto", "arx", "linear"}))
       ->default_str("auto");
-  verb.add_option("--order", options.order, "order of the difference model, 1 to 12")
+  verb.add_option("--order", options.order, "order of the difference model")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
   verb.add_option("--most-effects", options.search.most_effects,
@@ -29,8 +29,8 @@ void add_diagnose_options(CLI::App& verb, diagnosis::DiagnoseOptions& options) {
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
   verb.add_option("--least-force", options.least_force_n,
-                  "RMS force from which on an effect counts [N]; the default moves the cursor by\n"
-                  "0.8 mm. Outputs in other units: every effect counts")
+                  "smallest RMS force of an effect that counts [N]; the default moves the cursor "
+                  "by 0.8 mm. If the output has another unit, every effect counts")
       ->check(settings::number_between(0.0, kMostForce_n))
       ->capture_default_str();
 }

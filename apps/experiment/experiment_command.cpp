@@ -116,22 +116,20 @@ void add_new(CLI::App& verb, const std::shared_ptr<Typed>& typed) {
                   "model of condition C+, copied into the folder; `stillhand close-the-loop` and "
                   "`stillhand control-model` write such a file")
       ->check(settings::check_name);
-  sub->add_option(
-         "--seed", typed->seed,
-         "seed of the orders, which can be drawn again with it; without: from the system's "
-         "random source")
+  sub->add_option("--seed", typed->seed,
+                  "seed of the orders: the same seed gives the same orders [random]")
       ->check(session::check_seed);
   sub->callback([typed] { make(*typed); });
 }
 
 void add_run(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
   CLI::App* sub = subcommand(
-      verb, "run", "Conducts the next session of a participant, from where the last one ended.",
+      verb, "run", "Conducts a participant's next session; continues where the last one ended.",
       *typed);
   lab::LabOptions& lab = typed->lab;
   lab::set_places(lab);
   sub->add_option("--participant", typed->participant,
-                  "code such as P07; without: the first who is not complete");
+                  "code such as P07 [the first participant who is not complete]");
   sub->add_option("--domain", lab.domain, "DDS domain, 0 to 232")->capture_default_str();
   sub->add_option("--config", lab.config, "folder with the settings of each service")
       ->capture_default_str();
@@ -139,7 +137,7 @@ void add_run(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
                   "longest wait until every endpoint has matched [s]")
       ->capture_default_str();
   sub->add_option("--gamepad", lab.gamepad,
-                  "of operator: gamepad: input device, for example /dev/input/event5")
+                  "input device, for example /dev/input/event5, if the operator is gamepad")
       ->check(settings::check_name);
   sub->add_option("--stop-key", lab.stop_key,
                   "input device, for example /dev/input/event3: each of its keys is an emergency "
@@ -154,25 +152,23 @@ void add_run(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
 }
 
 void add_rest(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
-  CLI::App* shown = subcommand(verb, "status", "Shows what there is of each participant.", *typed);
+  CLI::App* shown = subcommand(verb, "status", "Shows how far each participant is.", *typed);
   shown->callback([typed, &status] { status = show_status(*typed); });
   CLI::App* excluded = subcommand(
-      verb, "exclude", "Notes that a participant's data do not count; deletes nothing.", *typed);
+      verb, "exclude", "Notes that a participant's data do not count. Deletes nothing.", *typed);
   excluded->add_option("--participant", typed->participant, "code such as P07")->required();
   excluded->add_option("--reason", typed->reason, "why")->required()->check(settings::check_name);
   excluded->callback([typed] { exclude(*typed); });
-  CLI::App* opened = subcommand(
-      verb, "unblind",
-      "Writes assignment.json: the condition of each label and trial. Refused while a participant "
-      "is not complete.",
-      *typed);
+  CLI::App* opened = subcommand(verb, "unblind",
+                                "Writes assignment.json: the condition of each label and trial. "
+                                "Refuses while a participant is not complete.",
+                                *typed);
   opened->add_option("--reason", typed->reason, "why now")->required()->check(settings::check_name);
   opened->add_option("--participant", typed->participant,
-                     "open this person alone, for the safety of that person; the others stay "
-                     "blinded");
-  opened->add_flag("--incomplete", typed->incomplete,
-                   "open all although somebody is not complete; the name of the folder has to be "
-                   "typed, or piped in");
+                     "open this participant alone, for their safety; the others stay blinded");
+  opened->add_flag(
+      "--incomplete", typed->incomplete,
+      "open all although a participant is not complete; you confirm with the folder's name");
   opened->callback([typed] {
     const std::string text = unblind(
         Folder(typed->folder), {typed->reason, typed->participant, typed->incomplete}, std::cin);

@@ -20,7 +20,7 @@ std::string state_of(const Progress& progress) {
   if (!progress.excluded().empty()) return "excluded: " + progress.excluded();
   if (progress.complete()) return "complete";
   if (progress.sessions() == 0) return "not begun";
-  return progress.session_open() ? "in a session, or stopped without an end" : "to be resumed";
+  return progress.session_open() ? "in a session, or the program stopped in it" : "to be resumed";
 }
 
 std::string row_of(const std::string& code, const Progress& progress, const Plan& plan) {
@@ -65,9 +65,9 @@ Overview overview_of(const Folder& folder) {
   if (const fs::path opened = folder.path() / kOpenedFile;
       folder.unblinded() &&
       recording::read_file(opened.string()) != opened_text(folder.design(), folder.assignment())) {
-    overview.findings.push_back(opened.string() +
-                                ": not what assignment.sealed says; `stillhand experiment unblind` "
-                                "writes it again");
+    overview.findings.push_back(
+        opened.string() +
+        ": differs from assignment.sealed; `stillhand experiment unblind` writes it again");
   }
   return overview;
 }

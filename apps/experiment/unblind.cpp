@@ -22,8 +22,8 @@ void refuse_incomplete(const Standing& standing) {
       "unblind",
       fmt::format("{} of {} participants not complete: {}", standing.incomplete.size(),
                   standing.planned(), in_words(standing.incomplete)),
-      "every participant complete or excluded; --participant opens one person alone, for that "
-      "person's safety; --incomplete opens all the same");
+      "every participant complete or excluded (--participant opens one person alone, for that "
+      "person's safety; --incomplete opens all)");
 }
 
 void confirm(const Folder& folder, const Standing& standing, std::istream& typed) {
@@ -31,8 +31,8 @@ void confirm(const Folder& folder, const Standing& standing, std::istream& typed
   const std::string name = path.parent_path().filename().string();
   if (isatty(STDIN_FILENO) == 1) {
     fmt::print(stderr,
-               "{}\nThis shows the conditions of all participants, also those who are not "
-               "complete. Type {} to go on: ",
+               "{}\nThis shows the conditions of all participants, including those who are not "
+               "complete. Type {} to continue: ",
                in_words(standing), name);
   }
   std::string line;

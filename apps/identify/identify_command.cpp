@@ -87,22 +87,21 @@ void add_identify_command(CLI::App& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = cli.add_subcommand(
       "identify",
-      "Fits the paper's model to one recording: a difference model by least squares at 50 Hz.\n"
-      "Reports its frequency response next to the measured one, and its error on the quarter of\n"
-      "the recording that the fit did not see. REC is the MCAP file of a session, or a CSV, "
-      "MATLAB,\n"
-      "HDF5, ROS 2 (MCAP) or sound file at 100 Hz or more, with columns 'name [unit]' and 't "
-      "[s]',\n"
-      "or with others and --map. Files of earlier results are replaced; they appear together or\n"
-      "not at all.\n"
-      "Examples: stillhand identify demo/session.mcap --save model.json --json out.json\n"
-      "          stillhand identify ride.csv --map 'time=t [s]' 'acc=a_y [m/s^2]' 'force=f [N]'");
+      "Fits the paper's model to one recording: a difference model by least squares at 50 "
+      "Hz.\nReports its frequency response next to the measured one, and its error on the quarter "
+      "of\nthe recording that the fit did not see. REC is the MCAP file of a session, or a CSV, "
+      "MATLAB,\nHDF5, ROS 2 (MCAP) or sound file at 100 Hz or more, with columns 'name [unit]' and "
+      "'t [s]',\nor with other columns and --map. Result files replace earlier ones, all together "
+      "or not at all.\nExamples: stillhand identify demo/session.mcap --save model.json --json "
+      "out.json\n          stillhand identify ride.csv --map 'time=t [s]' 'acc=a_y [m/s^2]' "
+      "'force=f [N]'");
   verb->add_option("REC", arguments->recording, "recording")->required();
-  verb->add_option("--order", arguments->identify.config.order, "order of the model, 1 to 12")
+  verb->add_option("--order", arguments->identify.config.order, "order of the model")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
-  verb->add_flag("--refine", arguments->identify.config.refine,
-                 "refine the least squares on its free-run error; also done if it is unstable");
+  verb->add_flag(
+      "--refine", arguments->identify.config.refine,
+      "refine the fit on its free-run error; the verb does so by itself if the fit is unstable");
   verb->add_option("--input", arguments->identify.input, "input channel of the model")
       ->capture_default_str();
   verb->add_option("--output", arguments->identify.output, "output channel of the model")
@@ -117,17 +116,20 @@ void add_identify_command(CLI::App& cli, int& status) {
   verb->add_option("--json", arguments->json, "file for all results")->check(settings::check_name);
   verb->add_flag(
       "--admittance", arguments->admittance,
-      "REC is a session of `stillhand lab --identify admittance,feedthrough`: admittance "
-      "and feedthrough of the free stick with 95 % bands, and a physical arm");
-  verb->add_option("--lever-m", arguments->lever_m, "of --admittance: hand to pivot [m]")
+      "for a session of `stillhand lab --identify admittance,feedthrough`: print admittance and "
+      "feedthrough of the free stick with 95 % bands, and a physical model of the arm");
+  verb->add_option("--lever-m", arguments->lever_m,
+                   "with --admittance: distance from hand to pivot [m]")
       ->check(CLI::Range(0.02, 0.5))
       ->capture_default_str();
-  verb->add_option("--picture", arguments->picture, "of --admittance: PNG file for the responses")
+  verb->add_option("--picture", arguments->picture, "with --admittance: PNG file for the responses")
       ->check(settings::check_name);
-  verb->add_option("--held", arguments->held,
-                   "of --admittance: session with --held-stick; with --swapped it tests that "
-                   "feedthrough to position is feedthrough to force times deflection per force");
-  verb->add_option("--swapped", arguments->swapped, "of --admittance: session with --swap-lines");
+  verb->add_option(
+      "--held", arguments->held,
+      "with --admittance: a session of `lab --held-stick`. With --swapped too, the verb tests that "
+      "the feedthrough to position is the feedthrough to force times the admittance");
+  verb->add_option("--swapped", arguments->swapped,
+                   "with --admittance: a session of `lab --swap-lines`");
   verb->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -30,7 +30,7 @@ namespace {
 void check_devices(const LabOptions& options) {
   if (options.undeclared_effect != 0) {
     throw ConfigError("--undeclared-effect", "it with --rig devices",
-                      "it with the simulated rig: nobody plants an effect in a person");
+                      "it with the simulated rig alone: a real arm takes no planted effect");
   }
   if (options.attach) {
     throw ConfigError("--attach", "--rig devices with it",

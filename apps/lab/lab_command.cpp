@@ -106,7 +106,7 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Arguments& arguments)
                  "comma-separated: " + session::known_conditions(session::kLabConditions))
       ->capture_default_str();
   lab.add_option("--arms", arguments.arms,
-                 "for the condition scheduled: the person's arms relaxed and holding, two files of "
+                 "for the condition scheduled: the person's arm, relaxed and holding; two files of "
                  "`stillhand identify --admittance --json`, comma-separated")
       ->delimiter(',');
   lab.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
@@ -114,23 +114,22 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Arguments& arguments)
   lab.add_option("--identify-seconds", options.protocol.identify_s,
                  "length of the pegged trial [s]; the paper's is 120")
       ->capture_default_str();
-  lab.add_option("--identify", arguments.identify,
-                 "admittance,feedthrough: in place of the conditions one trial in which motor and "
-                 "platform move the free stick at once; `stillhand identify --admittance` reads it")
+  lab.add_option(
+         "--identify", arguments.identify,
+         "admittance,feedthrough: instead of the conditions, one trial in which motor and platform "
+         "move the free stick together; `stillhand identify --admittance` evaluates it")
       ->excludes(lab.get_option("--conditions"))
       ->check(CLI::IsMember({"admittance,feedthrough"}));
   lab.add_option("--perturb-period-s", arguments.perturb_period_s,
-                 "of --identify: period of both multisines [s]; the trial is a whole number of "
-                 "them, five or more [20]");
-  lab.add_option("--task", arguments.task,
-                 "of --identify: what the simulated person does: hold, relax or give-way [hold]")
+                 "with --identify: period of both multisines [s]; the trial holds a whole number "
+                 "of periods, five or more [20]");
+  lab.add_option("--task", arguments.task, "with --identify: task of the simulated person [hold]")
       ->check(CLI::IsMember({"hold", "relax", "give-way"}));
-  lab.add_flag(
-      "--held-stick", arguments.held,
-      "of --identify: the stick stays on its peg; `identify --admittance --held` reads it");
+  lab.add_flag("--held-stick", arguments.held,
+               "with --identify: the stick stays on its peg; for `identify --admittance --held`");
   lab.add_flag("--swap-lines", arguments.swapped,
-               "of --identify: motor and platform take each other's lines; `identify --admittance "
-               "--swapped` reads it");
+               "with --identify: motor and platform exchange their frequencies; for `identify "
+               "--admittance --swapped`");
   lab.add_option("--seed", options.protocol.seed, "seed of everything random")
       ->check(session::check_seed)
       ->capture_default_str();
@@ -168,14 +167,13 @@ void add_motion_options(CLI::App& lab, LabOptions& options, Arguments& arguments
                  "--config); a growing oscillation ends the trial")
       ->check(settings::check_name)
       ->excludes(lab.get_option("--motion"));
-  CLI::Option* canceller = lab.add_option(
-      "--canceller", options.canceller,
-      "of condition C: now (1 kHz), or paper (behind the paper's low-pass of 10 Hz, at 50 Hz, one "
-      "sample late)");
+  CLI::Option* canceller = lab.add_option("--canceller", options.canceller,
+                                          "canceller of condition C: now (1 kHz), or paper (50 Hz, "
+                                          "after the paper's low-pass of 10 Hz, one sample late)");
   canceller->check(CLI::IsMember({"now", "paper"}))->capture_default_str();
   lab.add_option("--model", options.model,
-                 "control model for condition C, in place of the session's own; "
-                 "`stillhand close-the-loop` and `stillhand control-model` write such a file")
+                 "control model for condition C, instead of the session's own; `stillhand "
+                 "close-the-loop` and `stillhand control-model` write such a file")
       ->excludes(canceller)
       ->check(settings::check_name);
   lab.add_option("--undeclared-effect", options.undeclared_effect,
@@ -209,11 +207,11 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
                  "(deploy/security/make.sh makes it); without: no security")
       ->excludes(inventory)
       ->check(settings::check_name);
-  settings::repeatable(lab.add_option(
-      "--rig", arguments.rig,
-      "what the rig is made of: simulated; devices (a drive, a platform, sensors: devices.yaml of "
-      "--config says which, `stillhand calibrate` comes first); or another file in the form of "
-      "devices.yaml [simulated]. Or its number on the bus [1]. Both may be given"));
+  settings::repeatable(
+      lab.add_option("--rig", arguments.rig,
+                     "the rig's parts: simulated; devices (those of devices.yaml in --config; run "
+                     "`stillhand calibrate` first); or another file like devices.yaml [simulated]. "
+                     "A number is the rig's number on the bus [1]. Both may be given"));
   lab.add_option("--match-seconds", options.match_s,
                  "longest wait until every endpoint has matched [s]")
       ->capture_default_str();
@@ -226,8 +224,8 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
                "and fetch their recording")
       ->excludes(lab.get_option("--canceller"));  // their settings say it
   lab.add_option("--stop-key", options.stop_key,
-                 "input device, such as /dev/input/event3: any key of it is an emergency stop, and "
-                 "so is its loss");
+                 "input device, such as /dev/input/event3: each of its keys is an emergency stop, "
+                 "and so is its loss");
   lab.add_flag("--no-real-time", arguments.ordinary, "do not ask for real-time priority");
 }
 

@@ -51,8 +51,8 @@ void add_mitigations(const session::SessionResult& result, report::Page& page) {
   if (const session::TrialResult* c = trial_of(result, session::Condition::kC))
     trials.insert(trials.begin(), c);
   report::Table table{
-      "Every condition against the feedthrough, by the error behind the first third of its trial, "
-      "as in the study's table of mitigations.",
+      "Every mitigation, judged by the error after the first third of its trial, as in the study's "
+      "table of mitigations.",
       {"", "RMS error [mm]", "restored (B - it)/(B - A)", "motor [N]", "hand [N]"}};
   for (const session::TrialResult* trial : trials) {
     table.rows.push_back({session::name_of(trial->label), number(trial->settled_rms_error_mm),
@@ -77,7 +77,7 @@ report::Page session_page(const LabOptions& options, const session::SessionResul
               {"version", kVersion},
               {"command line", report::command_line()}});
   if (!result.rig_parts.empty()) page.paragraph("The " + result.rig_parts + ".");
-  page.section("The three figures");
+  page.section("Tracking metrics");
   report::Table table{"This session and the paper (Gillespie and Sövényi, Tables I and II).",
                       {"", "A", "B", "C", "restored (B - C)/(B - A)"}};
   for (const session::Metric& metric : session::kMetrics) {
@@ -86,8 +86,8 @@ report::Page session_page(const LabOptions& options, const session::SessionResul
   }
   page.table(table);
   page.paragraph(
-      "The paper's RMS error has no unit; it stands here at 5.5 mm a unit. One trial of each "
-      "condition has no interval: another session gives other figures.");
+      "The paper's RMS error has no unit; this page takes 5.5 mm for a unit. One trial of a "
+      "condition has no interval, and another session gives other numbers.");
   for (const std::string& line : disturbance_lines(result)) page.paragraph(line + ".");
   add_mitigations(result, page);
   if (drawings.empty()) return page;

@@ -70,7 +70,7 @@ void print_mitigations(const session::SessionResult& result) {
                     : "-",
                 trial->forces.motor_n, trial->forces.volitional_n);
   }
-  std::printf("restored: (B - it)/(B - A) of the RMS error behind the first third of each trial\n");
+  std::printf("restored: (B - X)/(B - A) of the RMS error after the first third of each trial\n");
 }
 
 void print_disturbances(const session::SessionResult& result) {
@@ -99,15 +99,16 @@ void print_models(const session::SessionResult& result,
     }
     if (trial.sensed_share) {
       std::printf(
-          "%s takes away %.0f %% (%.0f to %.0f) of the motion that the seat gives to the stick in "
-          "B, as sensed\n",
+          "%s removes %.0f %% (95 %%: %.0f to %.0f) of the stick's motion that the seat causes in "
+          "B; measured by the sensors\n",
           session::name_of(trial.label), 100.0 * trial.sensed_share->share,
           100.0 * trial.sensed_share->low, 100.0 * trial.sensed_share->high);
     }
   }
   if (result.conversion) {
     std::printf(
-        "left by the 1 kHz filter %.1f %%, by a zero-order hold of the 50 Hz model %.1f %%\n",
+        "conversion to 1 kHz: the filter leaves %.1f %% of the force, a zero-order hold of the 50 "
+        "Hz model %.1f %%\n",
         100.0 * result.conversion->control_filter, 100.0 * result.conversion->zero_order_hold);
   }
 }

@@ -27,17 +27,18 @@ std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options)
                   options.mapping.columns.push_back(parse_wish(word));
                 }
               },
-              "columns of a CSV, MATLAB, HDF5, MCAP (ROS 2) or sound file as channels:\n"
-              "'TITLE=NAME [UNIT]', the time is t: 'time=t [ms]' 'acc=a_y [g]' 'force=f [N]'.\n"
-              "A gain may follow: 'ai0=f [V] * 22.5 [N/V]'. Without a title: '#2'. Units become\n"
-              "SI ones. Without it, titles are 'name [unit]', and 't [s]' is the time")
+              "the channel of each column, as 'TITLE=NAME [UNIT]': 'time=t [ms]' 'acc=a_y [g]' "
+              "'force=f [N]'. The time is t. A gain may follow: 'ai0=f [V] * 22.5 [N/V]'. A column "
+              "without a title is '#2'. Units become SI units. Without --map, each title is 'name "
+              "[unit]', and the time is 't [s]'")
           ->type_name("'TITLE=NAME [UNIT]'")
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
           ->group(kGroup);
   CLI::Option* file =
-      verb.add_option("--map-file", options.map_file,
-                      "YAML file with the mapping (map, rate_hz, separator, decimal); one that is\n"
-                      "not there is asked for on the terminal and written")
+      verb.add_option(
+              "--map-file", options.map_file,
+              "YAML file with the mapping (map, rate_hz, separator, decimal). If it does not "
+              "exist, the verb asks for the mapping on the terminal and writes the file")
           ->check(settings::check_name)
           ->excludes(map)
           ->group(kGroup);
@@ -48,21 +49,23 @@ std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options)
                               },
                               "sample rate [Hz] of a file without times")
                           ->group(kGroup);
-  CLI::Option* separator =
+  CLI::Option* separator = verb.add_option_function<std::string>(
+                                   "--separator",
+                                   [&options](const std::string& word) {
+                                     options.mapping.form.separator =
+                                         parse_separator(word, "--separator");
+                                   },
+                                   "column separator of a text file: comma, semicolon, tab or "
+                                   "blank [found from the content]")
+                               ->group(kGroup);
+  CLI::Option* decimal =
       verb.add_option_function<std::string>(
-              "--separator",
+              "--decimal",
               [&options](const std::string& word) {
-                options.mapping.form.separator = parse_separator(word, "--separator");
+                options.mapping.form.decimal = parse_decimal(word, "--decimal");
               },
-              "between the columns of a text: comma, semicolon, tab, blank [found by the content]")
+              "decimal sign of a text file: point or comma [found from the content]")
           ->group(kGroup);
-  CLI::Option* decimal = verb.add_option_function<std::string>(
-                                 "--decimal",
-                                 [&options](const std::string& word) {
-                                   options.mapping.form.decimal = parse_decimal(word, "--decimal");
-                                 },
-                                 "decimal sign of a text: point, comma [found by the content]")
-                             ->group(kGroup);
   return {map, file, rate, separator, decimal};
 }
 

@@ -50,7 +50,7 @@ report::Figure figure_of(const session::SessionRecording& session,
                          const std::vector<session::Miss>& misses) {
   const auto worst = std::ranges::max_element(misses, {}, &session::Miss::late_s);
   report::Panel force{.title = when(*worst) + ": " + session::what_happened(*worst),
-                      .x = {.label = "time from the silence on [s]", .low = -0.5, .high = 2.0},
+                      .x = {.label = "time after the silence began [s]", .low = -0.5, .high = 2.0},
                       .y = {.label = "motor force [N]"}};
   report::Series acted{.label = "acted", .colour = report::Colour::kConditionC};
   const session::ClockLine rig(session.clock_offsets, "rig");
@@ -60,7 +60,7 @@ report::Figure figure_of(const session::SessionRecording& session,
     acted.x.push_back(t_s);
     acted.y.push_back(truth.motor_force_n());
   }
-  report::Series asked{.label = "that the prediction asks for",
+  report::Series asked{.label = "asked for by the prediction",
                        .kind = report::Kind::kDottedLine,
                        .colour = report::Colour::kTarget};
   const session::ClockLine cancellation(session.clock_offsets, "cancellation");
@@ -91,7 +91,7 @@ int run(const Arguments& arguments) {
                miss.waited.empty() ? "" : fmt::format("; {} waited", fmt::join(miss.waited, ", ")));
   }
   if (misses.empty()) {
-    fmt::print("nobody was late by {} ms or more\n", arguments.least_ms);
+    fmt::print("no process was late by {} ms or more\n", arguments.least_ms);
   }
   if (files.wants("--json")) files.set("--json", json_of(misses));
   if (files.wants("--picture")) {
@@ -112,17 +112,16 @@ void add_misses_command(CLI::App& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = cli.add_subcommand(
       "misses",
-      "Says who was late in the recording of a session: which process was silent by itself, when,\n"
-      "for how long, who had to wait for it, and what the motor force did.\n"
-      "Example: stillhand misses run1/session.mcap --picture late.svg");
+      "Lists the processes that were late in a recorded session: which process, when, for how "
+      "long,\nwhich other processes waited for it, and what the motor force did.\nExample: "
+      "stillhand misses run1/session.mcap --picture late.svg");
   verb->add_option("FILE", arguments->recording, "recording of a session (MCAP)")->required();
-  verb->add_option("--least-ms", arguments->least_ms,
-                   "a process that is late by less is not listed")
+  verb->add_option("--least-ms", arguments->least_ms, "shortest lateness that is listed [ms]")
       ->check(CLI::Range(1.0, 1e4))
       ->capture_default_str();
   verb->add_option("--json", arguments->json, "write the same as JSON to this file");
   verb->add_option("--picture", arguments->picture,
-                   "draw the motor force around the longest one into this file (SVG)");
+                   "SVG file: the motor force around the longest lateness");
   verb->callback([arguments, &status] { status = run(*arguments); });
 }
 

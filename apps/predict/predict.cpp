@@ -70,7 +70,7 @@ void add_ranges(const std::vector<diagnosis::LeftRange>& left, Prediction& predi
     note += ", in " + digits_of(100.0 * each.share);
     note += " % of the samples; ";
     if (each.effect.empty()) {
-      note += "the linear part goes on";
+      note += "the linear part continues";
     } else {
       note += "the effect is held below " + digits_of(range.lower_edge());
       note += " and above " + digits_of(range.upper_edge());
@@ -88,10 +88,10 @@ void add_bands(const std::vector<diagnosis::ExcitedBand>& bands, const diagnosis
     const double share =
         diagnosis::power_outside(band, input.values, input.mean, signals.rate_hz());
     if (share < kWorthANote) continue;
-    prediction.notes.push_back(digits_of(100.0 * share) + " % of the power of " + band.of +
-                               " lie outside " + digits_of(band.low_hz) + " to " +
-                               digits_of(band.high_hz) +
-                               " Hz, the band that was seen; there the model is not determined");
+    prediction.notes.push_back(
+        digits_of(100.0 * share) + " % of the power of " + band.of + " lie outside " +
+        digits_of(band.low_hz) + " to " + digits_of(band.high_hz) +
+        " Hz, the band of the fitted recording; outside of it the model is not determined");
   }
 }
 
@@ -101,13 +101,14 @@ void add_notes(const diagnosis::CarriedModel& carried, Prediction& prediction) {
   }
   for (const diagnosis::Effect& effect : carried.model.effects) {
     if (effect.is_whole()) continue;
-    prediction.notes.push_back(effect.kind + ": taken at " + digits_of(100.0 * effect.share) +
-                               " % of its size, as much as its recording bears out");
+    prediction.notes.push_back(
+        effect.kind + ": taken at " + digits_of(100.0 * effect.share) +
+        " % of its size, the share on which the parts of its recording agree");
   }
   if (carried.stability == diagnosis::Stability::kTested) {
     prediction.notes.emplace_back(
-        "the model's stability was tested on the inputs that it was fitted to and on others of "
-        "their spectrum, and is not proved");
+        "the model's stability is tested, not proved: on the inputs of the fitted recording and on "
+        "others with their spectrum");
   }
   for (const diagnosis::Effect& effect : carried.model.effects) {
     const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);

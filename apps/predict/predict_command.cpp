@@ -103,13 +103,13 @@ void add_predict_command(CLI::App& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = cli.add_subcommand(
       "predict",
-      "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\n"
-      "The recording need not hold the output; where it does, RMSE, VAF and fit are printed, of "
-      "the\n"
-      "linear model and of the carried one. Effects that another recording does not share (a\n"
-      "tone, a drift, a burst, a changing gain) are left out; beyond the range in which it was\n"
-      "seen, an effect is held at its edge. A note reports each.\n"
-      "Example: stillhand predict model.json ride.csv --out prediction.csv");
+      "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\nIf "
+      "the recording holds the output too, the verb prints RMSE, VAF and fit, of the linear "
+      "model\nand of the carried one. The carried model is the linear model with the effects that "
+      "hold in\nanother recording. A tone, a drift, a burst and a changing gain do not: they are "
+      "left out.\nOutside of the range of the first recording, an effect keeps its value at the "
+      "range's end.\nA note reports each case.\nExample: stillhand predict model.json ride.csv "
+      "--out prediction.csv");
   verb->add_option("MODEL", arguments->model, "model file")->required();
   verb->add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
       ->required();
@@ -117,15 +117,16 @@ void add_predict_command(CLI::App& cli, int& status) {
                    "trial of a session's recording: its number, or the letter of its condition");
   measurement::add_read_options(*verb, arguments->read);
   verb->add_option("--out", arguments->out,
-                   "CSV file of the prediction; next to it the measured output, where REC has it")
+                   "CSV file of the prediction, with the measured output if REC has it")
       ->required()
       ->check(settings::check_name);
   verb->add_option("--json", arguments->json,
-                   "file for RMSE, VAF and fit of the linear and the carried model; -: standard\n"
-                   "output, and the words go to standard error")
+                   "file for RMSE, VAF and fit of the linear and the carried model; - is standard "
+                   "output, and the text then goes to standard error")
       ->check(settings::check_name);
   verb->add_option("--picture", arguments->picture,
-                   "PNG or SVG file: measured, linear and carried over an excerpt, and residuals")
+                   "PNG or SVG file: an excerpt of the measured output, both predictions and their "
+                   "residuals")
       ->check(settings::check_name);
   verb->callback([arguments, &status] { status = run(*arguments); });
 }

@@ -48,12 +48,12 @@ int run_info(const InfoArguments& arguments) {
 
 void add_info(CLI::App& cli, int& status) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* verb = file_verb(
-      cli, arguments->recording, "info",
-      "Prints what a recording holds: topics, types, messages, rates, lost ticks, QoS,\n"
-      "metadata, damage. Reads the whole file and checks every checksum. Of a file that a crash\n"
-      "left open, it reads what is there and prints what is lost.\n"
-      "Example: stillhand info demo/session.mcap --json info.json");
+  CLI::App* verb =
+      file_verb(cli, arguments->recording, "info",
+                "Prints what a recording holds: topics, types, messages, rates, lost ticks, "
+                "QoS,\nmetadata, damage. Reads the whole file and checks every checksum. If a "
+                "crash left the file\nopen, the verb reads what is there and prints what is "
+                "lost.\nExample: stillhand info demo/session.mcap --json info.json");
   verb->add_option("--json", arguments->json, "write the same as JSON to this file");
   verb->callback([arguments, &status] { status = run_info(*arguments); });
 }
@@ -111,13 +111,13 @@ int run_recover(RecoverArguments arguments) {
 
 void add_recover(CLI::App& cli, int& status) {
   auto arguments = std::make_shared<RecoverArguments>();
-  CLI::App* verb = file_verb(
-      cli, arguments->recording, "recover",
-      "Copies everything readable of a cut-off or damaged recording into a new file, and prints\n"
-      "what is lost. With --out the old file stays as it is. Without --out the new file takes\n"
-      "the name of the old one, which is kept as FILE.damaged. The new file appears when it is\n"
-      "complete and on the disk. If the recording is whole, nothing is written.\n"
-      "Example: stillhand recover crashed.mcap --out whole.mcap");
+  CLI::App* verb =
+      file_verb(cli, arguments->recording, "recover",
+                "Copies what is readable in a cut-off or damaged recording into a new file, and "
+                "prints\nwhat is lost. With --out the old file stays as it is. Without --out the "
+                "new file takes\nthe name of the old one, which is kept as FILE.damaged. The new "
+                "file appears when it is\ncomplete and on the disk. If the recording is whole, "
+                "nothing is written.\nExample: stillhand recover crashed.mcap --out whole.mcap");
   verb->add_option("--out", arguments->options.out, "file to write; it must not exist yet");
   verb->add_option("--compression", arguments->compression,
                    "compression of the chunks: zstd, lz4 or none")

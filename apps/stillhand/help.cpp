@@ -34,12 +34,12 @@ const std::vector<Door>& overview() {
         {"predict", "put that model to the test on another recording"}}},
       {"A laboratory: stick, motor, platform, or their simulation",
        {{"lab", "run a whole session: identify, run the conditions, compute the results"},
-        {"calibrate", "find scales and signs of a rig of devices"},
+        {"calibrate", "find the scales and signs of real devices"},
         {"dashboard", "watch a session or a recording in a browser"},
         {"stop", "stop every session of this machine at once"},
         {"deploy", "write and check the files of a lab of several machines"}}},
       {"An experiment with people",
-       {{"experiment", "conduct it: pre-registration, journal, participants"},
+       {{"experiment", "conduct one: pre-registration, journal, participants"},
         {"study", "run the paper's experiment with simulated subjects, or evaluate people"},
         {"compare", "say which condition is best, and how sure that is"},
         {"vehicle", "map where hand and vehicle are stable together"}}},
@@ -50,27 +50,23 @@ const std::vector<Door>& overview() {
        {{"info", "say what is in a recording"},
         {"misses", "say who was late, and what the motor force did"},
         {"verify", "look for damage and gaps"},
-        {"recover", "save what a damaged recording still holds"},
-        {"export", "write it as CSV"},
-        {"record", "record a bus"},
-        {"replay", "play it back with its own timing"}}}};
+        {"recover", "copy what a damaged recording still holds"},
+        {"export", "write its topics as CSV, MATLAB, HDF5 or ROS 2"},
+        {"record", "record a running bus"},
+        {"replay", "play it on the bus, with its own timing"}}}};
   return doors;
 }
 
-// Breaks lines at blanks, where `room` columns are left for each.
+// One paragraph, with lines of at most `room` columns.
 std::string wrapped(const std::string& text, std::size_t room) {
-  std::istringstream lines(text);
+  std::istringstream words(text);
   std::ostringstream out;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::size_t column = 0;
-    for (std::string word; words >> word; column += word.size()) {
-      const bool fits = column + 1 + word.size() <= room;
-      if (column > 0) out << (fits ? ' ' : '\n');
-      column = column > 0 && fits ? column + 1 : 0;
-      out << word;
-    }
-    if (lines.peek() != EOF) out << '\n';
+  std::size_t column = 0;
+  for (std::string word; words >> word; column += word.size()) {
+    const bool fits = column + 1 + word.size() <= room;
+    if (column > 0) out << (fits ? ' ' : '\n');
+    column = column > 0 && fits ? column + 1 : 0;
+    out << word;
   }
   return out.str();
 }

@@ -92,10 +92,9 @@ report::Table recurring_table(const Diagnoses& diagnoses) {
 report::Table people_table(const StudyRecord& record) {
   report::Table table;
   table.caption =
-      "RMS force on pegged samples that no fit saw [N], with its 95 % interval where these last 30 "
-      "s "
-      "or more: without a motor; and what canceller and motor would have left of it by replaying "
-      "the recorded motion, with the linear model as in C and with the augmented one as in C+.";
+      "RMS force on pegged samples that no fit saw [N], with its 95 % interval if they last 30 s "
+      "or more: without a motor, with the linear model of C, and with the augmented model of C+. "
+      "Canceller and motor run on the recorded motion.";
   table.header = {"participant", "verdict", "without", "left by C", "left by C+", "C+ gains"};
   const auto files = participant_files(*record.recorded);
   for (const auto& [code, person] : record.diagnoses->people) {
@@ -114,11 +113,11 @@ report::Table people_table(const StudyRecord& record) {
 std::vector<std::string> missing_lines(const Diagnoses& diagnoses) {
   std::vector<std::string> out;
   for (const auto& [code, why] : diagnoses.failed) {
-    out.push_back(fmt::format("{}: not diagnosed: {}", code, why));
+    out.push_back(fmt::format("{} is not diagnosed: {}", code, why));
   }
   for (const auto& [code, person] : diagnoses.people) {
     if (!person.not_replayed.empty()) {
-      out.push_back(fmt::format("{}: no C+ to compare: {}", code, person.not_replayed));
+      out.push_back(fmt::format("{} has no C+ to compare: {}", code, person.not_replayed));
     }
   }
   return out;
@@ -128,7 +127,7 @@ std::vector<std::string> missing_lines(const Diagnoses& diagnoses) {
 
 std::string gain_sentence(const Diagnoses& diagnoses) {
   if (!diagnoses.gain) {
-    return "There is no test of what C+ would have gained: fewer than two people have both, or the "
+    return "There is no test of the gain of C+: fewer than two people have both C and C+, or the "
            "augmented model changes nobody's force.";
   }
   const auto& test = *diagnoses.gain;
@@ -220,8 +219,8 @@ report::Figure figure_gain(const Diagnoses& diagnoses) {
   panel.series = {without, linear, augmented};
   return {.name = kGainFigure,
           .caption =
-              "Feedthrough force on pegged samples that no fit saw, and what canceller and "
-              "motor would have left of it, for each participant.",
+              "Feedthrough force on pegged samples that no fit saw, for each participant: without "
+              "a motor, and what C and C+ would have left.",
           .panels = {panel},
           .columns = 1,
           .width_px = 860,
@@ -233,11 +232,11 @@ void add_diagnoses(report::Page& page, const StudyRecord& record, const report::
   const Diagnoses& diagnoses = *record.diagnoses;
   page.section("What the model lacks");
   page.paragraph(
-      "Each participant's recordings are diagnosed as stillhand close-the-loop diagnoses them: the "
-      "pegged trial for the body, the last trial of B for the stick, the last one of C for the "
-      "latency of the motor. Nothing but the recorded channels is used.");
+      "The diagnosis of each participant is that of `stillhand close-the-loop`: the pegged trial "
+      "shows the body, the last trial of B the stick, and the last trial of C the latency of the "
+      "motor. It uses the recorded channels alone.");
   if (diagnoses.recurring.empty()) {
-    page.paragraph("No effect was found in anybody.");
+    page.paragraph("No effect was found in any participant.");
   } else {
     page.table(recurring_table(diagnoses));
   }
@@ -270,8 +269,8 @@ void add_diagnosis(report::Page& page, const StudyRecord& record, const std::str
   if (!lines.empty()) page.list(lines);
   report::Table table;
   table.caption = fmt::format(
-      "RMS force over {} s of pegged samples that no fit saw: without a motor, and what canceller "
-      "and motor would have left of it.",
+      "RMS force over {} s of pegged samples that no fit saw: without a motor, and what C and C+ "
+      "would have left.",
       number(person.unseen_s, 0));
   table.header = {"", "force [N]"};
   if (person.by_linear) {

@@ -82,8 +82,8 @@ report::Panel among_panel(const StudyRecord& record, const SubjectResult* own, s
 report::Table numbers_table(const StudyRecord& record, const SubjectResult* own) {
   report::Table table;
   table.caption =
-      "The participant's own numbers next to the group's in the tables of the report and the "
-      "paper's means. The distance is in standard deviations of the group.";
+      "The participant, the group of the report's tables, and the paper's means. The distance from "
+      "the group's mean is in standard deviations of the group.";
   table.header = {"metric", "condition", "own", "group, mean ± SD", "distance", "paper"};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     for (const auto& [condition, metrics] : record.analysis.conditions) {
@@ -104,7 +104,7 @@ report::Table numbers_table(const StudyRecord& record, const SubjectResult* own)
 report::Table restored_table(const StudyRecord& record, const SubjectResult* own) {
   report::Table table;
   table.caption =
-      "Restoration (B − X)/(B − A): own, of the group's means with its interval, paper.";
+      "Restoration (B − X)/(B − A): the participant's, the group's with its interval, the paper's.";
   table.header = {"metric", "canceller", "own", "group [95 %]", "paper"};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     for (const auto& entry : record.analysis.restoration) {
@@ -125,8 +125,8 @@ report::Table restored_table(const StudyRecord& record, const SubjectResult* own
 report::Table trials_table(const RecordedSource& source, const std::string& code) {
   report::Table table;
   table.caption =
-      "Every complete tracking trial, in the order in which it was run. Block and place are those "
-      "of the registered plan; used: in the tables.";
+      "Every complete tracking trial, in the order of the session. Block and place are those of "
+      "the registered plan. Used: the trial is in the tables.";
   table.header = {"trial",          "session",     "block",    "place",    "condition",
                   "RMS error [mm]", "dwell ratio", "f_c [Hz]", "lost [%]", "used"};
   const auto planned = [](std::int64_t n) { return n > 0 ? std::to_string(n) : std::string("–"); };
@@ -233,8 +233,8 @@ void add_participants(report::Page& page, const StudyRecord& record) {
   page.section("Participants");
   report::Table table;
   table.caption =
-      "Each participant has a page of their own, also who is not in the tables. RMS errors in mm, "
-      "means over the own trials.";
+      "Each participant has a page, including those who are not in the tables. RMS errors [mm] are "
+      "means over the participant's trials.";
   table.header = {"participant", "trials"};
   for (const auto& entry : record.analysis.conditions) {
     table.header.push_back(std::string("RMS ") + name_of(entry.first));

@@ -12,8 +12,8 @@ namespace stillhand::study {
 void add_plan_options(CLI::App& cli, std::optional<std::vector<double>>& effects_dz) {
   cli.add_flag_callback(
       "--plan", [&effects_dz] { effects_dz = effects_dz.value_or(std::vector<double>{}); },
-      "how many participants the planned comparisons need for power 0.8 and 0.9, if their effect "
-      "is that of these data, or half of it");
+      "number of participants that the planned comparisons need for power 0.8 and 0.9, if the "
+      "effect is that of these data, or half of it");
   cli.add_option_function<std::vector<double>>(
          "--plan-effect", [&effects_dz](const std::vector<double>& given) { effects_dz = given; },
          "with --plan: further effect sizes d_z (mean difference over its standard deviation)")
@@ -23,11 +23,10 @@ void add_plan_options(CLI::App& cli, std::optional<std::vector<double>>& effects
 
 void add_people_options(CLI::App& cli, StudyRecord& record) {
   cli.add_flag("--diagnose", record.diagnose,
-               "what the model lacks in each person, and what C+ would have gained");
+               "find what the model lacks in each person, and what C+ would have gained");
   cli.add_flag("--simulated", record.simulate,
-               "simulated subjects next to the participants: the same people, with a paired test, "
-               "where an experiment's participants are simulated; otherwise as many of the "
-               "population");
+               "add simulated subjects: the same ones, with a paired test, if the participants are "
+               "simulated; otherwise as many subjects of the population");
 }
 
 }  // namespace stillhand::study

@@ -109,8 +109,7 @@ report::Table restorations_table(const Analysis& analysis) {
 report::Table steps_table(const Analysis& analysis) {
   report::Table table;
   table.caption =
-      "From one canceller to the next: paired t-tests of the participants' differences; p is not "
-      "adjusted.";
+      "Differences between cancellers: paired t-tests over the participants; p is not adjusted.";
   table.header = {"step", "metric", "change [95 % CI]", "p", "g_z"};
   for (const auto& [from, to] : kCancellerSteps) {
     const Comparison* found = find_comparison(analysis, from, to);
@@ -161,17 +160,17 @@ void add_cancellers(report::Page& page, const Analysis& analysis) {
   std::string text = "C cancels with the model of the session's pegged trial, as the paper does.";
   if (cancels_beyond) {
     text +=
-        " C' uses the same model, whose gain and phase follow the hand. C+ uses another model, "
+        " C' uses the same model and adapts its gain and phase to the hand. C+ uses another model, "
         "from a file.";
   }
   if (mitigates) {
     text +=
-        " The others are the mitigations of `stillhand lab --conditions`; those that act on the "
-        "command leave the motor off.";
+        " The others are mitigations of `stillhand lab --conditions`. A mitigation that acts on "
+        "the command leaves the motor off.";
   }
   page.paragraph(text);
   page.table(mitigations_table(analysis));
-  page.table(restorations_table(analysis));
+  if (!analysis.restoration.empty()) page.table(restorations_table(analysis));
   if (cancels_beyond) page.table(steps_table(analysis));
 }
 

@@ -85,7 +85,7 @@ void add_registered(report::Page& page, const StudyRecord& record) {
     const Registered& registered = *record.recorded->registered;
     page.section("Pre-registered analysis");
     if (registered.excluded.empty()) {
-      page.paragraph("The exclusion rules of experiment.yaml exclude nobody and no trial.");
+      page.paragraph("The exclusion rules of experiment.yaml exclude no participant and no trial.");
     } else {
       page.paragraph(
           "The exclusion rules of experiment.yaml take the following out of all other tables and "

@@ -53,7 +53,7 @@ report::Table means_table(const StudyRecord& record) {
 report::Table paired_table(const SimulatedSide& simulated) {
   report::Table table;
   table.caption = fmt::format(
-      "Recorded less simulated, person by person. t: paired t-test, p of Holm over all rows; W: "
+      "Recorded minus simulated, person by person. t: paired t-test, p of Holm over all rows; W: "
       "Wilcoxon's signed ranks, two-sided, not adjusted. Strong: below {}.",
       report::short_number(SimulatedSide::kAlpha));
   table.header = {"metric", "condition", "people", "difference [95 % CI]",
@@ -87,7 +87,7 @@ std::string chance_sentence(const SimulatedSide& simulated) {
       simulated.paired, [](const PairedCheck& check) { return check.test.has_value(); }));
   if (std::ranges::none_of(simulated.paired,
                            [](const PairedCheck& check) { return check.n > 0; })) {
-    return "There is no test: nobody was both recorded and simulated.";
+    return "There is no test: no person was both recorded and simulated.";
   }
   const bool equal = std::ranges::all_of(simulated.paired, [](const PairedCheck& check) {
     return check.n == 0 || (check.mean_difference == 0.0 && !check.test);
@@ -162,19 +162,17 @@ report::Figure figure_simulated(const StudyRecord& record) {
 void add_simulated(report::Page& page, const StudyRecord& record, const report::Drawing* drawing) {
   if (!record.simulated) return;
   const SimulatedSide& simulated = *record.simulated;
-  page.section("Next to simulated people");
+  page.section("Comparison with simulated subjects");
   page.paragraph(
       simulated.same_people
-          ? "The participants of this experiment are simulated, so the same people run once more "
-            "in "
-            "one process: the same bodies, motions, targets and remnants, without the bus, trial "
-            "by trial. What is left between both is what the bus and the clock did, and trials "
-            "that were "
-            "ended early, which do not run here."
-          : fmt::format("As many subjects of the population (seed {}) track with trials of the "
-                        "same length. "
-                        "They are other people, so nothing is compared person by person.",
-                        simulated.seed));
+          ? "The participants of this experiment are simulated. The same ones run again in one "
+            "process, trial by trial, with the same bodies, motions, targets and remnants, without "
+            "the bus. The difference comes from the bus and the clock, and from trials that ended "
+            "early, which do not run again."
+          : fmt::format(
+                "As many subjects of the population (seed {}) track with trials of the same "
+                "length. They are other people, so the comparison is not person by person.",
+                simulated.seed));
   std::vector<std::string> failed;
   for (const auto& [code, why] : simulated.failed) {
     failed.push_back(fmt::format("{}: not simulated: {}", code, why));

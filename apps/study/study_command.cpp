@@ -99,8 +99,8 @@ void add_protocol_options(CLI::App& study, StudyOptions& options, Arguments& arg
       ->capture_default_str();
   study
       .add_option("--canceller", options.canceller,
-                  "of condition C: now (1 kHz), or paper (behind the paper's low-pass of 10 Hz, at "
-                  "50 Hz, one sample late)")
+                  "canceller of condition C: now (1 kHz), or paper (50 Hz, after the paper's "
+                  "low-pass of 10 Hz, one sample late)")
       ->check(CLI::IsMember({"now", "paper"}))
       ->capture_default_str();
   study.add_flag("--wrong-models", options.wrong_models,
@@ -129,7 +129,7 @@ void add_subject_options(CLI::App& study, StudyOptions& options, Arguments& argu
       ->capture_default_str();
   study
       .add_option("--motor-delay", options.motor.delay_s,
-                  "motor.delay_s of every rig [s]: from a command to its current")
+                  "motor.delay_s of every rig [s]: delay from a command to the motor's current")
       ->check(settings::number_between(0.0, 0.2))
       ->capture_default_str();
   study
@@ -147,10 +147,9 @@ void add_subject_options(CLI::App& study, StudyOptions& options, Arguments& argu
 
 // The study of recorded people.
 void add_sessions_option(CLI::App& study, Arguments& arguments) {
-  CLI::Option* sessions = study.add_option(
-      "--sessions", arguments.sessions,
-      "folders of recorded sessions or of experiments: the study of the people in them, from "
-      "session.mcap alone");
+  CLI::Option* sessions = study.add_option("--sessions", arguments.sessions,
+                                           "folders of recorded sessions or of experiments: study "
+                                           "the people in them, from session.mcap alone");
   for (const CLI::Option* option : study.get_options()) {
     const std::string name = option->get_name();
     constexpr std::array kWithSessions{"--out", "--sessions", "--threads", "--population",
@@ -182,7 +181,7 @@ void add_study_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   study
       ->add_flag("--explain-paper", arguments->explain_paper,
-                 "instead of a study: looks for causes of the paper's Tables I and II")
+                 "instead of a study: look for causes of the paper's Tables I and II")
       ->excludes("--population")
       ->excludes("--conditions")
       ->excludes("--canceller")
@@ -192,8 +191,8 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--undeclared-effect");
   study
       ->add_flag("--calibrate", arguments->calibrate,
-                 "instead of a study: calibrates the population to A and B of the paper's Table I "
-                 "and writes it to the file --out")
+                 "instead of a study: calibrate the population to A and B of the paper's Table I, "
+                 "and write it to the file --out")
       ->excludes("--explain-paper")
       ->excludes("--conditions")
       ->excludes("--canceller")
@@ -201,11 +200,11 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--motor-delay")
       ->excludes("--answer-wait")
       ->excludes("--undeclared-effect");
-  CLI::Option* mitigations = study->add_option(
-      "--mitigations", arguments->campaign.mitigations,
-      "instead of a study: the table of mitigations, each in every task and motion and with own,\n"
-      "average and another's model: all, or names with commas, for example signal,force,damping;\n"
-      "48 subjects and trials of 60 s unless these are given");
+  CLI::Option* mitigations =
+      study->add_option("--mitigations", arguments->campaign.mitigations,
+                        "instead of a study: the table of mitigations, each in every task and "
+                        "motion, with the own, the average and another subject's model. all, or "
+                        "names such as signal,force,damping. Default: 48 subjects, trials of 60 s");
   for (const char* name :
        {"--conditions", "--canceller", "--wrong-models", "--stick-damping", "--motor-delay",
         "--answer-wait", "--undeclared-effect", "--explain-paper", "--calibrate"}) {

@@ -72,7 +72,7 @@ void add_recorded_facts(report::Page& page, const StudyRecord& record) {
   for (const std::string& code : source.participants) codes += (codes.empty() ? "" : ", ") + code;
   page.facts({{"participants", codes},
               {"complete tracking trials", std::to_string(source.trials.size())},
-              {"of them in the tables", std::to_string(source.used.size())},
+              {"trials in the tables", std::to_string(source.used.size())},
               {"trial", short_number(record.options.protocol.trial_s) + " s"},
               {"pegged trial", short_number(record.options.protocol.identify_s) + " s"},
               {"pre-registration", source.digest.empty() ? "none" : source.digest},
@@ -80,8 +80,8 @@ void add_recorded_facts(report::Page& page, const StudyRecord& record) {
               {"command line", record.command_line}});
   if (source.used.size() > source.participants.size() * record.analysis.conditions.size()) {
     page.paragraph(
-        "Several trials of one participant in one condition are averaged, each metric by itself: "
-        "trials are excluded first, then the mean is taken, then people are compared.");
+        "If a participant has several trials of a condition, each metric is their mean. Trials are "
+        "excluded before the mean is taken; people are compared after.");
   }
   if (!source.left_out.empty()) {
     page.paragraph("Left out:");
@@ -128,9 +128,9 @@ void add_banners(report::Page& page, const StudyRecord& record) {
 const char* people_of(const StudyRecord& record) {
   const Subjects who = subjects_of(record);
   return !record.recorded              ? "Simulated subjects track"
-         : who == Subjects::kPeople    ? "Participants, as recorded, track"
-         : who == Subjects::kSimulated ? "Simulated subjects, as recorded, track"
-                                       : "Participants and simulated subjects, as recorded, track";
+         : who == Subjects::kPeople    ? "Recorded participants track"
+         : who == Subjects::kSimulated ? "Recorded simulated subjects track"
+                                       : "Recorded participants and simulated subjects track";
 }
 
 void add_warnings(report::Page& page, const StudyRecord& record) {

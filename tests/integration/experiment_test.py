@@ -408,7 +408,7 @@ class RefusalTest(ExperimentTestCase):
             self.assertEqual(os.listdir(folder / "participants"), [])
         self.assertIn("without experiment.yaml", experiment("run", self.folder, status=2)[1])
         (self.study / "assignment.json").write_text("{}\n")
-        self.assertIn("assignment.json: not what assignment.sealed says", experiment("status", self.study, status=2)[1])
+        self.assertIn("assignment.json: differs from assignment.sealed", experiment("status", self.study, status=2)[1])
         (self.study / "assignment.sealed").write_text("00\n")
         self.assertIn("assignment.sealed", experiment("status", self.study, status=2)[1])
 

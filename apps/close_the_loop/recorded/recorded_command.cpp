@@ -74,10 +74,10 @@ void add_recorded_options(CLI::App& verb, RecordedOptions& options,
             "recording(s) of condition B, 1 kHz with theta, f and f_motor: friction and ripple")
       ->needs(pegged);
   add_files(verb, "--cancelled", options.cancelled,
-            "recording(s) of condition C, the same: the delay of motor and load cell")
+            "recording(s) of condition C, with the same channels: the delay of motor and load cell")
       ->needs(pegged);
   add_files(verb, "--unseen", options.unseen,
-            "pegged recording(s) for judging; without: the last of --pegged, or its last 30 %")
+            "pegged recording(s) that judge the model [the last of --pegged, or its last 30 %]")
       ->needs(pegged);
   verb.add_option("--input", options.diagnose.inputs,
                   "inputs of the model: channel(s), comma-separated")

@@ -64,10 +64,10 @@ struct Row {
 
 std::vector<Row> rows_of(const Judged& judged) {
   std::vector<Row> rows{{"nothing", level_text(judged.linear.without), ""},
-                        {"the linear model's prediction taken off", level_text(judged.linear.left),
+                        {"less the linear model's prediction", level_text(judged.linear.left),
                          cut_text(judged.linear)},
-                        {"the augmented model's prediction taken off",
-                         level_text(judged.augmented.left), cut_text(judged.augmented)}};
+                        {"less the augmented model's prediction", level_text(judged.augmented.left),
+                         cut_text(judged.augmented)}};
   const auto motor = [&](const char* what, const std::optional<Remaining>& remaining) {
     if (remaining) rows.push_back({what, level_text(remaining->left), cut_text(*remaining)});
   };

@@ -107,8 +107,8 @@ std::string cuts_text(const RecordedLoop& loop) {
     return by_motor ? cut_text(*by_motor) : std::string("nothing, because it does not run,");
   };
   return fmt::format(
-      "On {}, which no fit has seen, {} takes {} of the force away with the linear model (C) and "
-      "{} with the augmented one (C+).",
+      "On {}, which no fit has seen, {} removes {} of the force with the linear model (C) and {} "
+      "with the augmented one (C+).",
       last.source, motor ? "the motor" : "the prediction", cut(last.motor_linear, last.linear),
       cut(last.motor_augmented, last.augmented));
 }
@@ -116,10 +116,10 @@ std::string cuts_text(const RecordedLoop& loop) {
 // What became of the augmented model on the unseen records.
 std::string kept_text(const RecordedLoop& loop) {
   const Decision& decision = loop.decision;
-  const std::string warning =
-      decision.helps ? ""
-                     : " It leaves more than nothing at all does: check the signs, units and "
-                       "channels of the unseen records.";
+  const std::string warning = decision.helps
+                                  ? ""
+                                  : " It leaves more force than no model does: check the signs, "
+                                    "units and channels of the unseen records.";
   if (decision.same) return decision.helps ? "" : "The linear model (C) is kept." + warning;
   if (!decision.step) {
     return "C+ is not kept, because it did not run: the linear model (C) stays." + warning;
@@ -153,21 +153,21 @@ std::string parted_text(const RecordedLoop& loop) {
       left_in_all(loop, [](const Judged& judged) -> const Remaining& { return judged.augmented; });
   if (decision.step->left.rms <= kAsMuch * predicted) return {};
   std::string text = fmt::format(
-      "Prediction and motor part: with the augmented model the prediction leaves {} {} and the "
+      "Prediction and motor differ: with the augmented model the prediction leaves {} {} and the "
       "motor {}.",
       report::short_number(predicted), diagnose::shown_unit(loop.unit),
       report::short_number(decision.step->left.rms));
   for (const Treatment& each : loop.verdict.control.treatments) {
-    text += fmt::format(" {}: {} ({}).",
-                        each.cancelled ? "Run in a form of the canceller's own" : "Left alone",
-                        diagnose::spaced(each.kind), each.how);
+    text +=
+        fmt::format(" {}: {} ({}).", each.cancelled ? "Changed for the canceller" : "Left alone",
+                    diagnose::spaced(each.kind), each.how);
   }
   if (loop.linear_control) {
     const double linear =
         left_in_all(loop, [](const Judged& judged) -> const Remaining& { return judged.linear; });
     text += fmt::format(
-        " With the linear model, where only lag, delay and limits part them, the prediction leaves "
-        "{} and the motor {}.",
+        " With the linear model, where only lag, delay and limits make a difference, the "
+        "prediction leaves {} and the motor {}.",
         report::short_number(linear), report::short_number(decision.step->without.rms));
   }
   double limited = 0.0;

@@ -74,7 +74,7 @@ Explanation against_variable(const Evidence& evidence, const EffectTrace& trace,
         with_errors(falling ? "falling" : "rising", colour, means(trace.without, counted)));
   }
   result.text =
-      "means by bins of the variable that explains the effect, separately for rising and falling "
+      "means over bins of the variable that explains the effect, separately for rising and falling "
       "values; lines: the effect";
   return result;
 }
@@ -115,8 +115,8 @@ Explanation as_curve(const Evidence& evidence, std::size_t which, const diagnosi
                     binned_means(axis, over->values, trace.without, weight, correlation)));
   }
   result.text =
-      "the curve as it was fitted, with 95 % of its numbers' errors; the knot without a "
-      "band is where it is counted from";
+      "the fitted curve with the 95 % band of its numbers; the curve is zero at the knot without a "
+      "band";
   return result;
 }
 

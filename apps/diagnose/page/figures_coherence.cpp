@@ -75,8 +75,9 @@ Panel over_frequency(const CoherenceResult& before, const CoherenceResult* after
       before.partial.begin());
   Panel panel;
   panel.x = {.label = "frequency [Hz]", .scale = Scale::kLogarithmic};
-  panel.y = {
-      .label = "with " + before.partial[strongest].channel + " [-]", .low = 0.0, .high = 1.0};
+  panel.y = {.label = "coherence with " + before.partial[strongest].channel + " [-]",
+             .low = 0.0,
+             .high = 1.0};
   const auto add = [&](const CoherenceResult& result, Colour colour, double width_px) {
     panel.series.push_back({.label = "",
                             .kind = Kind::kLine,
@@ -107,19 +108,18 @@ report::Figure figure_coherence(const Evidence& evidence) {
   std::vector<Panel> panels{by_channel(before, after)};
   if (!before.partial.empty()) panels.push_back(over_frequency(before, after));
   const int height_px = panels.size() > 1 ? 520 : 300;
-  return {
-      .name = "partial_coherence",
-      .caption =
-          "Coherence of the residual with every measured channel, the inputs removed from both, "
-          "and with the inputs themselves. First: the highest of all frequencies; then, over "
-          "frequency, the channel that has the highest. Threshold: exceeded by chance in 1 % of "
-          "records, corrected for all frequencies and channels, with " +
-          report::number(before.independent_averages, 0) +
-          " independent averages. A value above it shows that a linear path exists, not how much "
-          "the path matters; the verdict does not use it.",
-      .panels = std::move(panels),
-      .width_px = 980,
-      .height_px = height_px};
+  return {.name = "partial_coherence",
+          .caption =
+              "Coherence of the residual with each input, and with every other channel after the "
+              "inputs are removed from both. First panel: the highest value of each channel. "
+              "Second panel: the channel with the highest value, over frequency. Threshold: chance "
+              "exceeds it in 1 % of records, corrected for all frequencies and channels, with " +
+              report::number(before.independent_averages, 0) +
+              " independent averages. A value above it shows that a linear path exists, not how "
+              "much the path matters. The verdict does not use it.",
+          .panels = std::move(panels),
+          .width_px = 980,
+          .height_px = height_px};
 }
 
 }  // namespace stillhand::diagnose

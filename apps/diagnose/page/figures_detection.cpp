@@ -88,16 +88,16 @@ report::Figure figure_detections(const Evidence& evidence) {
   chance.legend = report::Legend::kNone;
   share.reference_lines = {{.at = 100.0 * diagnosis::kLeastShare, .label = "threshold"}};
   chance.reference_lines = {{.at = diagnosis::kSignificance, .label = "threshold"}};
-  return {.name = "detections",
-          .caption =
-              "The questions that explain most of the residual. Above: share of its power on "
-              "held-out blocks (negative ones drawn at 0). Below: probability of such a gain by "
-              "chance, corrected for all questions after Holm (smaller ones drawn at 1e-30). Large "
-              "marks: answered yes, with the share above its threshold and p below its own. y: the "
-              "body's output.",
-          .panels = {share, chance},
-          .width_px = 980,
-          .height_px = 560};
+  return {
+      .name = "detections",
+      .caption =
+          "The questions that explain most of the residual. Above: share of its power on held-out "
+          "blocks (negative ones drawn at 0). Below: probability of such a gain by chance, "
+          "corrected for all questions after Holm (smaller ones drawn at 1e-30). A large mark is a "
+          "yes: its share is above the threshold, and its p below. y: the body's output.",
+      .panels = {share, chance},
+      .width_px = 980,
+      .height_px = 560};
 }
 
 }  // namespace stillhand::diagnose

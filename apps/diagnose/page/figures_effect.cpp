@@ -111,10 +111,12 @@ report::Figure figure_effect(const Evidence& evidence, std::size_t which) {
   arrange(figure);
   if (!is_predicted) return figure;
   figure.caption +=
-      std::string(" Over what the effect predicts: the residual without it. ") +
+      std::string(
+          " Panel with the slope: the residual without the effect, over what the effect "
+          "predicts. ") +
       (trace.refitted ? "The model without the effect was fitted again."
                       : "The model without the effect keeps the other numbers of the joint fit.") +
-      " Bars: one standard error, samples counted once a correlation length (" +
+      " Bars: one standard error, with one independent sample in each correlation length (" +
       report::short_number(evidence.correlation_samples / evidence.signals.rate_hz()) + " s).";
   return figure;
 }

@@ -61,8 +61,8 @@ std::string chances(const diagnosis::DetectionLines& lines) {
   std::string text;
   const auto add = [&text](const char* name, const diagnosis::LineGroup& group) {
     if (group.empty()) return;
-    text += (text.empty() ? "" : "; ") + std::string(name) + " " + percent(group.share) +
-            " of its power above the noise, p " + p_value(group.p);
+    text += (text.empty() ? "" : "; ") + std::string(name) + " " + percent(group.share) + " (p " +
+            p_value(group.p) + ")";
   };
   add("odd lines", lines.odd);
   add("even lines", lines.even);
@@ -76,7 +76,8 @@ report::Figure figure_lines(const Evidence& evidence) {
   const diagnosis::Diagnosis& found = evidence.found;
   const diagnosis::DetectionLines& before = *found.before.lines;
   std::vector<Panel> panels{panel_of(before, "baseline's residual", found.output_unit)};
-  std::string groups = "Before: " + chances(before) + ".";
+  std::string groups =
+      "Share of the residual's power above the noise, before: " + chances(before) + ".";
   if (!found.effects.empty() && found.after.lines) {
     panels.push_back(panel_of(*found.after.lines, "residual with the effects", found.output_unit));
     groups += " After: " + chances(*found.after.lines) + ".";
@@ -88,11 +89,10 @@ report::Figure figure_lines(const Evidence& evidence) {
                                           found.sample_rate_hz) +
                      " s, " + std::to_string(before.repeats.periods) + " periods: harmonics of " +
                      report::short_number(before.fundamental_hz) +
-                     " Hz. A linear system responds at the excited harmonics alone; distortion of "
-                     "even order appears at even harmonics, of odd order at odd ones. Dotted: the "
-                     "noise at each harmonic, from the lines between the harmonics. " +
-                     groups +
-                     " p is not corrected here; the table of questions has corrected ones.",
+                     " Hz. A linear system responds at the excited harmonics alone. Distortion of "
+                     "even order appears at even harmonics, distortion of odd order at odd ones. "
+                     "Dotted: the noise at each harmonic, from the lines between the harmonics. " +
+                     groups + " p is not corrected here; the table of questions corrects it.",
           .panels = std::move(panels),
           .columns = columns,
           .width_px = 980,

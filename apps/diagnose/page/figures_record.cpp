@@ -99,15 +99,15 @@ report::Figure figure_prediction(const Evidence& evidence) {
     panel->x.low = measured.x.front();
     panel->x.high = measured.x.back();
   }
-  return {.name = "prediction",
-          .caption = std::string("Free run over the measurement, ") +
-                     (found ? "where the effects explain most" : "in the middle of the record") +
-                     "; below, the residuals. The models receive the inputs alone and are fitted "
-                     "to the whole record; the table of errors is of held-out data. Gaps: samples "
-                     "without weight.",
-          .panels = {above, below},
-          .width_px = 980,
-          .height_px = 560};
+  return {
+      .name = "prediction",
+      .caption = std::string("Above: measurement and free run, ") +
+                 (found ? "where the effects explain most" : "in the middle of the record") +
+                 ". Below: the residuals. The models get the inputs alone. Here they are fitted to "
+                 "the whole record; Table 1 is of held-out data. In a gap, samples have no weight.",
+      .panels = {above, below},
+      .width_px = 980,
+      .height_px = 560};
 }
 
 report::Figure figure_over_time(const Evidence& evidence) {
@@ -145,11 +145,11 @@ report::Figure figure_over_time(const Evidence& evidence) {
   return {
       .name = "residual_over_time",
       .caption =
-          "Root mean square of the residual, block by block. Largest over median: " +
+          "RMS of the residual in each block. Largest block over median block: " +
           report::number(found.before.spread.largest_ratio, 2) +
           (both ? " before, " + report::number(found.after.spread.largest_ratio, 2) + " after"
                 : "") +
-          "; noise that varies over time is not an effect. Grey: the noise floor and its interval.",
+          ". Noise that varies over time is not an effect. Grey: the noise floor and its interval.",
       .panels = {panel},
       .width_px = 980,
       .height_px = 320};

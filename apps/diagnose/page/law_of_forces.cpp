@@ -130,9 +130,10 @@ Law term_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tr
                   return values_at(force_of(model.effects[at.which]));
                 }),
                 panel);
-  return {{panel},
-          "The effect's force with 95 % of its numbers' errors, and means of the residual by bins.",
-          true};
+  return {
+      {panel},
+      "The effect's force with the 95 % band of its numbers, and means of the residual over bins.",
+      true};
 }
 
 // phi over its argument, both as forces at the output, Eq. DG-74 and DG-75.
@@ -170,7 +171,7 @@ Law loop_law(const Evidence& evidence, const SizeCase& at) {
   };
   add_with_band("the nonlinearity", over, curve_of(at.model), evidence.errors.of(curve_of), panel);
   return {{panel},
-          "The nonlinearity over its argument (DG-74, DG-75) with 95 % of its numbers' errors."};
+          "The nonlinearity over its argument (DG-74, DG-75), with the 95 % band of its numbers."};
 }
 
 }  // namespace

@@ -112,8 +112,8 @@ Law path_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tr
   add_with_band("the path", f_hz, m, m_error, magnitude);
   add_with_band("the path", f_hz, p, p_error, phase);
   return {{magnitude, phase},
-          "Magnitude and phase of the path with 95 % of its numbers' errors; bars: the record's "
-          "response, 95 %."};
+          "Magnitude and phase of the path, with the 95 % band of its numbers. Bars: the response "
+          "that the record shows, 95 %."};
 }
 
 Law map_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& trace) {
@@ -148,7 +148,7 @@ Law map_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tra
                                                     weight, evidence.correlation_samples)));
   }
   add_with_band("the map", x, mapped(at.model), evidence.errors.of(mapped), panel);
-  return {{panel}, "The map with 95 % of its numbers' errors."};
+  return {{panel}, "The map with the 95 % band of its numbers."};
 }
 
 }  // namespace stillhand::diagnose

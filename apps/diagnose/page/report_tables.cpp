@@ -44,12 +44,17 @@ std::string listed(const std::vector<std::string>& names) {
   return names.empty() ? "–" : fmt::format("{}", fmt::join(names, ", "));
 }
 
+std::string error_text(const ModelNumber& number) {
+  if (std::isfinite(number.standard_error)) return short_number(number.standard_error);
+  return number.origin == "given" || number.origin == "searched" ? "not fitted" : "not determined";
+}
+
 void add_numbers(Table& table, const std::string& of, const std::vector<ModelNumber>& numbers) {
   bool first = true;
   for (const ModelNumber& number : numbers) {
     table.rows.push_back({first ? of : "", number.name,
-                          Cell(short_number(number.value), Emphasis::kStrong),
-                          short_number(number.standard_error), number.unit, number.origin});
+                          Cell(short_number(number.value), Emphasis::kStrong), error_text(number),
+                          number.unit, number.origin});
     first = false;
   }
 }
@@ -120,9 +125,9 @@ Table error_table(const Diagnosis& found) {
   const std::string unit = shown_unit(found.output_unit);
   Table table;
   table.caption =
-      "RMS error of the free run on blocks of time that the fit has not seen, with its 95 % "
-      "interval "
-      "over the blocks; variance accounted for; ratio to the noise floor.";
+      "RMS error of the free run on blocks of time that the fit has not seen, and its 95 % "
+      "interval over the blocks. VAF: variance accounted for. Last column: the error over the "
+      "noise floor.";
   table.header = {"model",  "RMSE [" + unit + "]", "95 % interval [" + unit + "]", "VAF [%]",
                   "change", "over the floor"};
   const double floor = found.noise_floor.rmse;
@@ -137,8 +142,8 @@ Table error_table(const Diagnosis& found) {
         error_row("final, against the baseline", found.final_error, found.baseline_error, floor));
   }
   if (!found.effects.empty()) {
-    table.rows.push_back(error_row("carried by the saved model, against the baseline",
-                                   found.carried_error, found.baseline_error, floor));
+    table.rows.push_back(error_row("saved model, against the baseline", found.carried_error,
+                                   found.baseline_error, floor));
   }
   table.rows.push_back({"noise floor", Cell(short_number(floor), Emphasis::kStrong),
                         interval(found.noise_floor.low, found.noise_floor.high)});
@@ -148,11 +153,12 @@ Table error_table(const Diagnosis& found) {
 Table effect_table(const Diagnosis& found) {
   Table table;
   table.caption =
-      "Effects in the order in which they were added. p: probability of such an improvement by "
-      "chance, by the signed ranks of the blocks. Ties: other kinds that explain the record "
-      "equally "
-      "well; the simplest was taken. Carried: what the saved model, and so `predict`, has "
-      "of it; `control-model` says what the motor does.";
+      "Effects in the order in which they were added. Form: a term through the body passes the "
+      "linear part; a term beside the body adds to the output. p: the probability of such an "
+      "improvement by chance, from the signed ranks of the blocks. Ties: other kinds that explain "
+      "the record equally well; the simplest was taken. Carried: the part of the effect that the "
+      "saved model holds, so that `predict` uses it. `control-model` prints what the motor does "
+      "about it.";
   table.header = {
       "effect", "form", "evidence", "own size [" + shown_unit(found.output_unit) + "], 95 %",
       "p",      "ties", "carried"};
@@ -172,10 +178,8 @@ Table parameter_table(const Evidence& evidence) {
   table.caption =
       "Numbers of the final model; baseline and effects are fitted together to the whole record. "
       "Standard errors are those of the linearised fit under noise of the residual's colour "
-      "(DG-70, "
-      "DG-71); an en dash: the number was not fitted, or the record does not determine it. A "
-      "coefficient multiplies the effect's term. The coefficients of a path through the body or of "
-      "a loop are in the model file.";
+      "(DG-70, DG-71). A coefficient multiplies the effect's term. The model file holds the "
+      "coefficients of a path through the body or of a loop.";
   table.header = {"part", "number", "value", "standard error", "unit", "origin"};
   table.align = {Align::kLeft,  Align::kLeft, Align::kRight,
                  Align::kRight, Align::kLeft, Align::kLeft};
@@ -208,11 +212,10 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
         (tables.empty() ? std::string("No effect was worth adding: ")
                         : std::string("No further effect was worth adding: ")) +
         candidates_in_words(last) + ". An effect is added if the error falls by more than " +
-        percent(found.options.search.least_fall, 0) + " with p below " +
+        percent(found.options.search.least_fall, 0) + " and p is below " +
         short_number(found.options.search.significance) +
-        " divided by the number of candidates; the division is left out if the error falls by more "
-        "than " +
-        percent(found.options.search.large_fall, 0) + "; at most " +
+        " divided by the number of candidates (not divided if the error falls by more than " +
+        percent(found.options.search.large_fall, 0) + "). At most " +
         std::to_string(found.options.search.most_effects) + " effects are added.";
     tables.push_back(tried_table(
         found, {found.search.last_current, last, last.size(), found.options.search}, caption));
@@ -223,10 +226,10 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
 Table limit_table(const Diagnosis& found) {
   Table table;
   table.caption =
-      "What would not have been seen: an effect of that kind is found as often as not if it adds "
-      "this much to the output (RMS) that the linear part cannot imitate, all the time; a smaller "
-      "one may be there.";
-  table.header = {"found as often as not from", "kinds"};
+      "What would not have been seen. An effect of this size is found in half of all recordings; a "
+      "smaller one may be there. Size: the RMS that the effect adds to the output all the time, "
+      "and that the linear part cannot imitate.";
+  table.header = {"size found in half of all recordings", "kinds"};
   table.align = {Align::kLeft, Align::kLeft};
   std::map<double, std::vector<std::string>> kinds;
   for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
@@ -242,10 +245,9 @@ Table limit_table(const Diagnosis& found) {
 Table detection_table(const Diagnosis& found) {
   Table table;
   table.caption =
-      "Questions that were asked of the residual. Each adds columns to the model, whose own "
-      "numbers "
-      "are fitted again. Share: the part of the residual's power that the columns explain on "
-      "held-out blocks. p: the probability of that by chance, corrected after Holm for all " +
+      "Questions to the residual. Each adds columns to the model, and the model is fitted again. "
+      "Share: the part of the residual's power that the columns explain on held-out blocks. p: the "
+      "probability of that by chance, corrected after Holm for all " +
       std::to_string(found.before.detections.size()) + " questions.";
   const bool both = !found.effects.empty();
   table.header = {"question", "about", "share", "p", "found"};

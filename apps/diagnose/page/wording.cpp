@@ -160,11 +160,12 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
     return "Effects found: " + model + " lacks " + enumerated(names) +
            (diagnosis.unexplained ? ", and something that no kind of effect explains" : "") +
            (none_carried(diagnosis) ? ", none of which the saved model carries" : "") +
-           ". How sure: by chance an improvement like " +
-           (names.size() == 1 ? "it" : "the least of them") + " has p = " + p_value(largest_p) +
-           (tied ? ", but other kinds explain some of it equally well (see the ties)" : "") +
-           ". What it costs: without " + (names.size() == 1 ? "it " : "them ") +
-           error_in_words(diagnosis) + "." + (too_small.empty() ? "" : " " + too_small);
+           ". By chance, an improvement like " +
+           (names.size() == 1 ? "it" : "the smallest of them") + " has the probability " +
+           p_value(largest_p) +
+           (tied ? "; other kinds explain some of it equally well (see the ties)" : "") +
+           ". Without " + (names.size() == 1 ? "it " : "them ") + error_in_words(diagnosis) + "." +
+           (too_small.empty() ? "" : " " + too_small);
   }
   const std::string left = shown(diagnosis.baseline_error.rmse, diagnosis.output_unit) +
                            " RMS on held-out data (95 %: " +
@@ -172,10 +173,9 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                            ")";
   if (diagnosis.unexplained) {
     return "Unexplained residual: " + model +
-           " leaves more than noise, and no kind of effect explains it. How sure: the residual "
-           "depends on something that was asked about, and chance does not make that. What it "
-           "costs: the model leaves " +
-           left + ", where the noise floor is " +
+           " leaves more than noise, and no kind of effect explains it. The residual depends on a "
+           "quantity that was tested; chance does not do that. The model leaves an error of " +
+           left + "; the noise floor is " +
            shown(diagnosis.noise_floor.rmse, diagnosis.output_unit) + ".";
   }
   if (!too_small.empty()) {
@@ -183,13 +183,13 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            ".";
   }
   return "Nothing missing: no effect reduces the error of " + model +
-         " by more than chance does. How sure: an effect that adds " +
+         " by more than chance does. An effect that adds " +
          shown(diagnosis.detection_limit, diagnosis.output_unit) +
-         " RMS that a linear model cannot imitate is found as often as not (" +
+         " RMS that a linear model cannot imitate is found in half of all recordings (" +
          spaced(hardest_to_find().name()) + " only from " +
          shown(diagnosis.detection_limit_of(hardest_to_find()), diagnosis.output_unit) +
-         " on); a smaller one may be there. What is left: " + left +
-         ", which depends on none of the quantities that were tested.";
+         "); a smaller one may be there. What is left is " + left +
+         ". It depends on none of the quantities that were tested.";
 }
 
 }  // namespace stillhand::diagnose

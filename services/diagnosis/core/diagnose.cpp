@@ -305,7 +305,7 @@ void add_carried(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
     }
     if (found.carried > 0.0) {
       if (found.carried < 1.0) {
-        found.why_not_carried = "parts of the recording bear this share of it out";
+        found.why_not_carried = "the parts of the recording agree on this share alone";
       }
       continue;
     }

@@ -68,7 +68,8 @@ class NonlinearStiffness final : public EffectKind {
     if (!effect.channels.empty()) {
       return "the residual has a cubic part in " + effect.channels.front();
     }
-    return "the response changes with its own amplitude, oddly: a spring, " + effect.form;
+    return "the stiffness changes with the amplitude, the same way to both sides: a spring, " +
+           effect.form;
   }
 
  private:

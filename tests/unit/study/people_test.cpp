@@ -114,9 +114,9 @@ TEST_F(PairedChecksTest, MoreThanChanceIsWhatHolmLeavesBelowTheLevel) {
 
 TEST(ChanceSentenceTest, WhereNobodyWasComparedNothingIsSaidOfADifference) {
   SimulatedSide sut;
-  EXPECT_THAT(chance_sentence(sut), HasSubstr("nobody was both"));
+  EXPECT_THAT(chance_sentence(sut), HasSubstr("no person was both"));
   sut.paired = {{}};  // a metric that nobody has
-  EXPECT_THAT(chance_sentence(sut), HasSubstr("nobody was both"));
+  EXPECT_THAT(chance_sentence(sut), HasSubstr("no person was both"));
   sut.paired.push_back({.condition = kA, .n = 2});
   EXPECT_THAT(chance_sentence(sut), HasSubstr("do not differ at all"));
 }

@@ -66,12 +66,12 @@ void use_final_model(NoiseFloor& floor, const ErrorBounds& bounds) {
     floor.high = std::min(floor.high, std::max(bounds.impulse_response, floor.rmse));
   }
   floor.method =
-      "residual of the final model, corrected for its fitted numbers and without what any question "
-      "about channels, state and time still explains; the interval is that of the held-out blocks, "
-      "at most the residual of a long impulse response";
+      "the residual of the final model, corrected for the count of fitted numbers, without what "
+      "the questions about channels, state and time still explain. The interval is that of the "
+      "held-out blocks. It ends at the residual of a long impulse response, if that is lower";
   // Noise can't be more than is left: an estimate beyond that end says nothing.
   for (const NoiseEstimate& other : floor.estimates) floor.low = std::min(floor.low, other.rmse);
-  if (floor.estimates.size() > 1) floor.method += ", and reaches down to the lowest estimate";
+  if (floor.estimates.size() > 1) floor.method += ". It begins at the lowest estimate";
 }
 
 void use_repeats(NoiseFloor& floor, const Repeats& repeats, const Periodicity& periodicity,
@@ -79,12 +79,13 @@ void use_repeats(NoiseFloor& floor, const Repeats& repeats, const Periodicity& p
   floor.rmse = repeats.rms;
   floor.low = repeats.low;
   floor.high = repeats.high;
-  floor.method = "repeats: the deviation of the final model's residual between " +
-                 std::to_string(repeats.periods) + " periods of the excitation (" +
-                 digits(static_cast<double>(periodicity.period) / rate_hz, kDigits) + " s each" +
-                 (repeats.first_left_out ? ", the first left out because it differs" : "") +
-                 "), without the mean period; 95 % after chi-square with " +
-                 digits(repeats.degrees_of_freedom, kDigits) + " degrees of freedom";
+  floor.method =
+      "repeats: the standard deviation of the final model's residual between " +
+      std::to_string(repeats.periods) + " periods of the excitation (" +
+      digits(static_cast<double>(periodicity.period) / rate_hz, kDigits) + " s each" +
+      (repeats.first_left_out ? ", without the first one, which differs" : "") +
+      "), after the mean period is subtracted. The 95 % interval is that of chi-square with " +
+      digits(repeats.degrees_of_freedom, kDigits) + " degrees of freedom";
 }
 
 }  // namespace
@@ -108,10 +109,11 @@ NoiseFloor noise_floor_of(const DetectionResult& after, const Screening& screeni
   }
   for (std::size_t i = 1; i < floor.estimates.size(); ++i) {
     const NoiseEstimate& other = floor.estimates[i];
-    floor.method += (i == 1 ? ". Others: " : ", ") + other.name + " " + digits(other.rmse, kDigits);
+    floor.method +=
+        (i == 1 ? ". Other estimates: " : ", ") + other.name + " " + digits(other.rmse, kDigits);
     if (other.name == "high frequencies") {
-      floor.method +=
-          " (the excited band has " + digits(ratio, kDigits) + " times the density above it)";
+      floor.method += " (in the excited band, the density is " + digits(ratio, kDigits) +
+                      " times that above the band)";
     }
   }
   return floor;
