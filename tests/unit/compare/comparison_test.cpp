@@ -97,7 +97,7 @@ TEST(ComparisonTest, OnePersonSaysNothingAboutOthers) {
   const Comparison sut = compared({lab, second});
   EXPECT_THAT(sut.rankings[kError].contrasts, SizeIs(0));
   EXPECT_THAT(sut.rankings[kError].as_good, ElementsAre(1));
-  EXPECT_THAT(findings(sut).at(0), HasSubstr("says nothing about others"));
+  EXPECT_THAT(findings(sut).at(0), HasSubstr("says nothing about other people"));
   EXPECT_FALSE(sut.options[1].outcomes[kError].restored.share);
 }
 
@@ -115,7 +115,7 @@ TEST(FindingsTest, SayWhatWhomAndHowSure) {
   const std::string text = findings(sut).at(0);
   EXPECT_THAT(text, HasSubstr("one, C is the best on average (21.5 mm, 4 people)"));
   EXPECT_THAT(text, HasSubstr("0 of 4 are worse off"));
-  EXPECT_THAT(text, HasSubstr("than the next, one, E, by 5.12 mm"));
+  EXPECT_THAT(text, HasSubstr("The next is one, E: the difference is 5.12 mm"));
   EXPECT_THAT(text, HasSubstr("the same people"));
 }
 

@@ -67,7 +67,7 @@ TEST(SummaryTest, SimulatedSubjectsArePersonsInNoFile) {
   EXPECT_EQ(summary_of(record).at("operator"), "simulated");
   const std::string page = study_report(record, {}).html();
   EXPECT_THAT(page, HasSubstr("no person took part"));
-  EXPECT_THAT(page, Not(HasSubstr("Participants, as recorded")));
+  EXPECT_THAT(page, Not(HasSubstr("Recorded participants")));
   EXPECT_THAT(participant_page(record, "P02", {}).html(), HasSubstr("no person took part"));
 }
 
