@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/alignment.hpp"
+#include "services/diagnosis/core/detection/detection.hpp"
 #include "services/identification/core/excitation_check.hpp"
 #include "services/identification/core/paper_preprocessing.hpp"
 
@@ -157,6 +159,44 @@ void fit(const identification::Record& recorded, const identification::Record& f
   }
 }
 
+// What makes a fit worthless although there is one; empty: nothing.
+std::string why_worthless(const Measurement& measurement, const IdentifyOptions& options,
+                          const identification::Record& fitted, const IdentifyResult& result) {
+  if (std::string why = why_unsound(measurement, {options.input, options.output}); !why.empty()) {
+    return why;
+  }
+  const double left = 1.0 - 0.01 * result.model.heldout.free_run_vaf_percent;
+  std::string mass = diagnosis::unlikely_mass(
+      {options.input, result.input_unit, rms_about_mean(fitted.acceleration_m_s2), options.output,
+       result.output_unit, std::sqrt(std::max(0.0, 1.0 - left)) * rms_about_mean(fitted.force_n)});
+  if (left < 0.5 && !mass.empty()) return mass;
+  if (left <= diagnosis::kAlignmentGate) return {};
+  const diagnosis::Alignment alignment =
+      diagnosis::aligned(fitted.acceleration_m_s2, fitted.force_n, fitted.rate_hz);
+  double most = result.model.heldout.free_run_vaf_percent;
+  diagnosis::Alignment best;
+  for (const diagnosis::Alignment& each : diagnosis::readings(alignment)) {
+    identification::Record moved = fitted;
+    moved.acceleration_m_s2 = diagnosis::moved(fitted.acceleration_m_s2, fitted.rate_hz, each);
+    const double vaf = identification::fit_arx(moved, static_cast<int>(options.config.order))
+                           .heldout.free_run_vaf_percent;
+    if (vaf <= most) continue;
+    most = vaf;
+    best = each;
+  }
+  if (1.0 - 0.01 * most < diagnosis::kBetterClock * left) {
+    return fmt::format("{}: a model after that explains {:.4g} % instead of {:.4g} %",
+                       diagnosis::in_words(best), most, result.model.heldout.free_run_vaf_percent);
+  }
+  if (left <= 1.0 - diagnosis::kLeastShare) return {};
+  return fmt::format(
+      "{} explains {:.3g} % of {} on samples that the fit has not seen, {:g} % or "
+      "more would be something: these channels don't belong together, or no linear model joins "
+      "them",
+      options.input, result.model.heldout.free_run_vaf_percent, options.output,
+      100.0 * diagnosis::kLeastShare);
+}
+
 // The model, Eq. ID-1, has no constant term.
 void note_offset(const Channel& channel, const std::vector<double>& values,
                  std::vector<std::string>& notes) {
@@ -200,6 +240,7 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   out.rate_hz = measurement.rate_hz;
   out.samples = recorded.size();
   out.notes = measurement.notes;
+  out.screening = measurement.screening;
   note_what_was_used(measurement, used, out.notes);
   note_offset(input, recorded.acceleration_m_s2, out.notes);
   note_offset(output, recorded.force_n, out.notes);
@@ -213,6 +254,9 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
                       "a measured response to the input");
   }
   fit(recorded, fitted, options.config, out);
+  if (const std::string why = why_worthless(measurement, options, fitted, out); !why.empty()) {
+    out.unusable = why;
+  }
   divide(out.model.fit.numerator, scale);
   divide(out.model.control.numerator, scale);
   for (double& value : fitted.acceleration_m_s2) value *= scale;

@@ -33,10 +33,11 @@ struct IdentifyResult {
   double rate_hz = 0.0;     ///< [Hz] of the recording
   std::size_t samples = 0;  ///< [-] samples of the recording that were used
   std::vector<std::string> notes;
+  std::vector<diagnosis::SampleFault> screening;
   /// `control` is empty if `unusable` is not.
   identification::FeedthroughModel model;
   std::string why_refined;  ///< reason for the refinement; empty: the paper's least squares
-  std::string unusable;     ///< why there is no filter for the canceller; empty: there is one
+  std::string unusable;     ///< why the canceller can't use it; empty: it can
   double dc_gain_db = 0.0;
   std::optional<Notch> notch;
   std::vector<identification::ResponsePoint> response;  ///< of the model, at its own rate

@@ -65,8 +65,10 @@ int run(const Arguments& arguments) {
   }
   report::ResultFiles files({{"--save", arguments.save}, {"--json", arguments.json}},
                             {arguments.recording, arguments.read.map_file});
-  const IdentifyResult result = identify(
-      measurement::read_measurement(arguments.recording, arguments.read), arguments.identify);
+  measurement::ReadOptions read = arguments.read;
+  read.channels = {{arguments.identify.input}, arguments.identify.output};
+  const IdentifyResult result =
+      identify(measurement::read_measurement(arguments.recording, read), arguments.identify);
   if (files.wants("--save")) {
     if (!result.unusable.empty()) {
       throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "apps/measurement/screening_json.hpp"
 #include "services/signal/difference_model.hpp"
 
 namespace stillhand::identify {
@@ -73,7 +74,7 @@ std::string quality_lines(const IdentifyResult& result) {
       result.unusable.empty()
           ? fmt::format("filter at 1 kHz    within {:.2f} % of the model's peak gain, 0 to 10 Hz\n",
                         100.0 * result.model.conversion_error)
-          : fmt::format("filter at 1 kHz    none ({})\n", result.unusable);
+          : fmt::format("usable             no: {}\n", result.unusable);
   return text;
 }
 
@@ -104,7 +105,9 @@ std::string result_json(const IdentifyResult& result) {
       {"dc_gain_db", result.dc_gain_db},
       {"notch_hz", result.notch ? ordered_json(result.notch->frequency_hz) : nullptr},
       {"usable", usable},
+      {"why", result.unusable},
       {"text", result.unusable},
+      {"screening", measurement::screening_json(result.screening)},
       {"control_model", usable ? model_json(result.model.control) : ordered_json(nullptr)},
       {"conversion_error", usable ? ordered_json(result.model.conversion_error) : nullptr},
       {"notes", result.notes}};

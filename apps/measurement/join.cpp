@@ -65,6 +65,10 @@ void append(Measurement& whole, Measurement&& part) {
     channel.values.insert(channel.values.end(), values.begin(), values.end());
   }
   whole.weight.insert(whole.weight.end(), part.weight.begin(), part.weight.end());
+  for (diagnosis::SampleFault& fault : part.screening) {
+    for (double& time_s : fault.times_s) time_s += later_s;
+    whole.screening.push_back(std::move(fault));
+  }
   for (const std::string& note : part.notes) whole.notes.push_back(part.source + ": " + note);
   whole.source += ", " + part.source;
 }

@@ -59,10 +59,25 @@ void refuse_slow_hand(const diagnosis::Measurement& measurement) {
                                 1.0 / kLeastHandRate_hz));
 }
 
-diagnosis::Measurement with_notes(recording::Recording rows, std::size_t most_values,
-                                  const std::vector<std::string>& notes) {
-  diagnosis::Measurement out = on_grid(std::move(rows), most_values);
-  out.notes.insert(out.notes.begin(), notes.begin(), notes.end());
+// Every recording comes this way.
+diagnosis::Measurement screened(recording::Recording rows, const ReadOptions& options,
+                                const std::vector<std::string>& notes,
+                                const std::vector<BackStep>& back_steps = {}) {
+  std::vector<diagnosis::SampleFault> faults = screen(rows, options.channels);
+  for (const BackStep& step : back_steps) {
+    faults.push_back({"t",
+                      "time_goes_back",
+                      {step.time_s},
+                      0.0,
+                      fmt::format("t: the stamps go back by {:.4g} s after {:.4g} s: a new stretch "
+                                  "begins there, and time goes on.",
+                                  step.back_s, step.time_s)});
+  }
+  diagnosis::Measurement out = on_grid(std::move(rows), options.most_values);
+  std::vector<std::string> before = notes;
+  for (const diagnosis::SampleFault& fault : faults) before.push_back(fault.says);
+  out.notes.insert(out.notes.begin(), before.begin(), before.end());
+  out.screening = std::move(faults);
   return out;
 }
 
@@ -71,7 +86,7 @@ diagnosis::Measurement read_session(const std::string& path, const ReadOptions& 
                             ? read_session_rows(path, options.trial)
                             : read_session_rows(path, options.session_trial, true);
   if (!session.loss.empty()) runtime::remark(session.loss);
-  return with_notes(std::move(session.rows), options.most_values, session.notes);
+  return screened(std::move(session.rows), options, session.notes);
 }
 
 // The mapping of a file; signs and sample rate that are options count before those of a file.
@@ -114,7 +129,7 @@ diagnosis::Measurement read_table(const std::string& path, const ReadOptions& op
   MappedRows mapped = apply_mapping(*file, mapping);
   file.reset();  // a text is as large as its numbers
   diagnosis::Measurement out =
-      with_notes(std::move(mapped.rows), options.most_values, mapped.notes);
+      screened(std::move(mapped.rows), options, mapped.notes, mapped.back_steps);
   refuse_blink(out);
   if (mapping.columns.empty()) refuse_slow_hand(out);  // a mapping confirms the unit of the times
   return out;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/measurement/sample_screen.hpp"
 #include "apps/measurement/tables/mapping.hpp"
 #include "apps/measurement/tables/table_file.hpp"
 #include "services/diagnosis/core/measurement.hpp"
@@ -22,6 +23,7 @@ struct ReadOptions {
   std::string session_trial = {};
   /// [-] samples times channels that are read at most; 8 B each, and as much again while reading.
   std::size_t most_values = 60'000'000;
+  ModelChannels channels = {};  ///< that the screening judges as the model's
   /// Columns, sample rate and signs of a file of another program,
   /// RECORDINGS_OF_OTHER_PROGRAMS.md.  If it is empty, the titles state the columns.
   Mapping mapping = {};
@@ -32,7 +34,8 @@ struct ReadOptions {
 
 /// Reads a recording: an MCAP file of a session, CSV (services/recording/README.md), or a file of
 /// another program: a text table, MATLAB, HDF5, MCAP of ROS 2, WAV.  The first bytes show which.
-/// The result is on a uniform grid; the notes say how it got there.  If a session's recording is
+/// The rows are screened, README "Screening"; what it found is in `screening` and in the notes. The
+/// result is on a uniform grid; the notes say how it got there.  If a session's recording is
 /// damaged or cut off, one line on standard error reports the loss, and the rest is used.
 /// @throws stillhand::ConfigError when the file can't be read or holds nothing useful.  The message
 ///         gives line and column of a text, the trials of a session, or a mapping that would do.

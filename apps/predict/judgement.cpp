@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "apps/measurement/screening_json.hpp"
 #include "apps/report/or_null.hpp"
 
 namespace stillhand::predict {
@@ -109,6 +110,7 @@ std::string judgement_json(const Prediction& prediction, const std::optional<Jud
                     {"samples", prediction.table.row_count()},
                     {"linear", nullptr},
                     {"carried", nullptr},
+                    {"screening", measurement::screening_json(prediction.screening)},
                     {"notes", prediction.notes},
                     {"provenance", nullptr}};
   if (judgement) json["carried"] = json_of(judgement->carried.score);

@@ -151,6 +151,7 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
   Prediction prediction;
   prediction.output = model.output;
   prediction.notes = measurement.notes;
+  prediction.screening = measurement.screening;
   add_notes(carried, prediction);
   add_ranges(diagnosis::left_ranges(model, carried.inputs, signals, run), prediction);
   add_bands(carried.bands, measured, prediction);

@@ -15,6 +15,7 @@ struct Prediction {
   recording::Recording table;      ///< `t [s]`, `<output>_model [unit]`, a row a measured sample
   std::string output;              ///< the channel that is predicted
   std::vector<std::string> notes;  ///< effects left out, ranges left: one clause each
+  std::vector<diagnosis::SampleFault> screening = {};
 };
 
 /// From the inputs alone; every stretch from the steady state of its first second (DG-54), every

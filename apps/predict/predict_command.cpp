@@ -74,8 +74,9 @@ int run(const Arguments& arguments) {
   const bool svg = is_svg(arguments.picture);
   if (files.wants("--picture")) report::require_gnuplot();
   const Models models = read_models(arguments.model);
-  const diagnosis::Measurement measured =
-      measurement::read_measurement(arguments.recording, arguments.read);
+  measurement::ReadOptions read = arguments.read;
+  read.channels = {models.carried.model.inputs, models.carried.model.output};
+  const diagnosis::Measurement measured = measurement::read_measurement(arguments.recording, read);
   Prediction prediction = predict(models.carried, measured);
   const std::optional<Judgement> judgement = judged(prediction, models.linear, measured);
   if (files.wants("--json")) {

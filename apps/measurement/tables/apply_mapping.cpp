@@ -197,6 +197,7 @@ MappedRows apply_mapping(TableFile& file, const Mapping& asked) {
     sources += (i == 0 ? "" : ", ") + note_of(column, mapping.columns[i], conversions[i]);
   }
   RawColumns raw = file.read(choice.columns);
+  out.back_steps = std::move(raw.back_steps);
   out.notes = head.notes;
   out.notes.push_back(head.form + ": " + sources + ".");
   out.notes.insert(out.notes.end(), raw.notes.begin(), raw.notes.end());

@@ -15,6 +15,7 @@ namespace stillhand::measurement {
 struct MappedRows {
   recording::Recording rows;
   std::vector<std::string> notes;
+  std::vector<BackStep> back_steps = {};
 };
 
 /// Takes the columns that the mapping names, converts their units and leaves out rows that lack a

@@ -30,6 +30,12 @@ double number_of(const Cell& cell) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+// Of a topic's messages, those that do not fit its definition, at most: damage hits single ones,
+// and a writer with another definition has more of them.
+constexpr double kMostMisfits = 0.05;
+// Between the segments of stamps that went back: no bridge reaches over it.
+constexpr std::int64_t kBetweenSegments_ns = 2'000'000'000;
+
 // A whole number within +-4e9, which no sum of seconds and nanoseconds overflows; else 0.
 std::int64_t whole_of(const Cell& cell) {
   const double value = number_of(cell);
@@ -48,6 +54,48 @@ struct TopicRows {
   std::vector<std::int64_t> time_ns;
   std::vector<std::vector<double>> values;
   std::vector<double> time_s;
+  std::size_t misfits = 0;            // messages that do not fit the definition
+  std::vector<std::size_t> segments;  // first message of each, as they came; the stamps go back
+
+  // A message that comes late has a stamp that no other has.  Where the stamps have gone back,
+  // those that follow lie among those that came before.
+  void find_segments() {
+    segments = {0};
+    std::size_t latest = 0;
+    for (std::size_t i = 1; i < time_ns.size(); ++i) {
+      if (time_ns[i] >= time_ns[latest]) {
+        latest = i;
+        continue;
+      }
+      std::size_t end = i + 1;
+      while (end < time_ns.size() && time_ns[end] < time_ns[latest]) ++end;
+      const auto begin = time_ns.begin();
+      const auto at = [&](std::size_t k) { return begin + static_cast<std::ptrdiff_t>(k); };
+      const auto [low, high] = std::minmax_element(at(i), at(end));
+      const auto among = std::count_if(at(segments.back()), at(i),
+                                       [&](std::int64_t t) { return t >= *low && t <= *high; });
+      if (2 * among >= at(end) - at(i)) {
+        segments.push_back(i);
+        latest = i;
+      } else {
+        i = end - 1;
+      }
+    }
+  }
+  // [ns] earliest and latest stamp of a segment.
+  [[nodiscard]] std::pair<std::int64_t, std::int64_t> span(std::size_t segment) const {
+    const auto [low, high] = std::minmax_element(at(segment), at(segment + 1));
+    return {*low, *high};
+  }
+  void move(std::size_t segment, std::int64_t by_ns) {
+    for (auto t = at(segment); t != at(segment + 1); ++t) {
+      time_ns[static_cast<std::size_t>(t - time_ns.cbegin())] += by_ns;
+    }
+  }
+  [[nodiscard]] std::vector<std::int64_t>::const_iterator at(std::size_t segment) const {
+    const std::size_t first = segment < segments.size() ? segments[segment] : time_ns.size();
+    return time_ns.cbegin() + static_cast<std::ptrdiff_t>(first);
+  }
 
   // By time; of several messages with one stamp the first stays.
   std::size_t sort() {
@@ -138,6 +186,8 @@ class BagTable : public TableFile {
     RawColumns out;
     check_size(by_topic);
     collect(columns, by_topic);
+    note_misfits(by_topic, out);
+    follow_back_steps(by_topic, out);
     std::int64_t zero_ns = std::numeric_limits<std::int64_t>::max();
     for (auto& [number, rows] : by_topic) {
       if (const std::size_t dropped = rows.sort(); dropped > 0) {
@@ -158,6 +208,52 @@ class BagTable : public TableFile {
  private:
   [[nodiscard]] const std::string& name(std::size_t topic) const {
     return bag_->topics.topics[topic]->name;
+  }
+
+  void note_misfits(const std::map<std::size_t, TopicRows>& by_topic, RawColumns& out) const {
+    for (const auto& [number, rows] : by_topic) {
+      if (rows.misfits == 0) continue;
+      const std::size_t all = rows.misfits + rows.time_ns.size();
+      const std::string count = std::to_string(rows.misfits) + " of " + std::to_string(all) +
+                                " messages of " + name(number) + " do not fit their definition";
+      if (static_cast<double>(rows.misfits) > kMostMisfits * static_cast<double>(all)) {
+        throw ConfigError(head().path, count, "at most 5 %; record it with the right definition");
+      }
+      out.notes.push_back(count + ": they are left out.");
+    }
+  }
+
+  // One clock stamps all topics.  Where it has gone back, time goes on and a new stretch begins.
+  void follow_back_steps(std::map<std::size_t, TopicRows>& by_topic, RawColumns& out) const {
+    std::size_t most = 1;
+    for (auto& [number, rows] : by_topic) {
+      if (rows.time_ns.empty()) return;
+      rows.find_segments();
+      most = std::max(most, rows.segments.size());
+    }
+    for (const auto& [number, rows] : by_topic) {
+      if (rows.segments.size() == most) continue;
+      throw ConfigError(head().path, "time stamps that go back, but not those of " + name(number),
+                        "topics of one clock");
+    }
+    const auto earliest = [&](std::size_t segment) {
+      std::int64_t out_ns = std::numeric_limits<std::int64_t>::max();
+      for (const auto& [number, rows] : by_topic) {
+        out_ns = std::min(out_ns, rows.span(segment).first);
+      }
+      return out_ns;
+    };
+    const std::int64_t start_ns = earliest(0);
+    for (std::size_t segment = 1; segment < most; ++segment) {
+      std::int64_t end_ns = std::numeric_limits<std::int64_t>::min();
+      for (const auto& [number, rows] : by_topic) {
+        end_ns = std::max(end_ns, rows.span(segment - 1).second);
+      }
+      const std::int64_t by_ns = end_ns + kBetweenSegments_ns - earliest(segment);
+      for (auto& [number, rows] : by_topic) rows.move(segment, by_ns);
+      out.back_steps.push_back({static_cast<double>(end_ns - start_ns) / 1e9,
+                                static_cast<double>(by_ns - kBetweenSegments_ns) / 1e9});
+    }
   }
 
   void check_size(const std::map<std::size_t, TopicRows>& by_topic) const {
@@ -186,7 +282,9 @@ class BagTable : public TableFile {
                                                             }) -
                                        bag_->topics.topics.begin());
           const auto rows = by_topic.find(number);
-          if (rows == by_topic.end() || !found->second->columns->read(message.bytes, cells)) {
+          if (rows == by_topic.end()) return true;
+          if (!found->second->columns->read(message.bytes, cells)) {
+            ++rows->second.misfits;
             return true;
           }
           take(message, *found->second, cells, columns, rows->second);

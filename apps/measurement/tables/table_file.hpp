@@ -28,11 +28,18 @@ struct TableHead {
   std::vector<std::string> notes;
 };
 
+/// Where the stamps of a file go back; time goes on in the rows, with a gap.
+struct BackStep {
+  double time_s = 0.0;  ///< [s] of the last row before it
+  double back_s = 0.0;  ///< [s]
+};
+
 /// Values of the columns that were asked for, in that order.
 struct RawColumns {
   std::vector<double> time_s;               ///< [s] empty unless `has_times`
   std::vector<std::vector<double>> values;  ///< of one length; NaN: the row has no such value
   std::vector<std::string> notes;
+  std::vector<BackStep> back_steps = {};
 };
 
 /// A file with columns of numbers, of any kind.  The head is read first: it decides which columns

@@ -55,7 +55,7 @@ class TextTable : public TableFile {
       split(line.text, layout_.form.separator, cells);
       if (cells.size() < layout_.titles.size()) {
         if (!line.ended) {
-          out.notes.push_back("The last line is cut off and left out.");
+          out.notes.emplace_back("The last line is cut off and left out.");
           break;
         }
         ++short_rows;

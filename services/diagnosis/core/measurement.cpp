@@ -84,6 +84,15 @@ std::vector<double> Measurement::time_s() const {
   return time_s;
 }
 
+std::string why_unsound(const Measurement& measurement, const std::vector<std::string>& channels) {
+  for (const SampleFault& fault : measurement.screening) {
+    if (fault.unsound && std::ranges::find(channels, fault.channel) != channels.end()) {
+      return fault.says;
+    }
+  }
+  return {};
+}
+
 void check(const Measurement& measurement) {
   if (!(measurement.rate_hz > 0.0) || !(measurement.rate_hz <= kHighestRate_hz)) {
     throw ConfigError(measurement.source + ", rate", digits(measurement.rate_hz, 3) + " Hz",

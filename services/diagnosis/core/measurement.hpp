@@ -23,6 +23,16 @@ struct Stretch {
   std::size_t recording = 0;  ///< which of the recordings that were joined
 };
 
+/// What the screening of a recording's rows found in one channel, before they came onto the grid.
+struct SampleFault {
+  std::string channel;
+  std::string what;             ///< "held", "stuck", "clipped", "spikes", "sentinel", ...
+  std::vector<double> times_s;  ///< [s] where it begins, the first ten places
+  double share = 0.0;           ///< [-] of the rows
+  std::string says;             ///< one sentence: what it is, and what was left out
+  bool unsound = false;         ///< a model of this channel means nothing
+};
+
 /// Measured channels on one uniform grid, with a stretch for every run without a long gap.  Samples
 /// of a short gap are filled in by interpolation, so that a simulation can run through them; their
 /// weight is 0.
@@ -34,12 +44,18 @@ struct Measurement {
   std::vector<double> weight;      ///< [-] 1: measured, 0: filled in; size()
   std::vector<std::string> notes;  ///< what the reader did, a sentence each (gaps, resampling, ...)
 
+  std::vector<SampleFault> screening = {};
+
   [[nodiscard]] std::size_t size() const noexcept { return weight.size(); }
   /// Channel of that name, or nullptr.
   [[nodiscard]] const Channel* find(std::string_view name) const noexcept;
   /// [s] time of a sample.
   [[nodiscard]] std::vector<double> time_s() const;
 };
+
+/// Why no model of these channels means anything, by the screening; empty: nothing speaks against
+/// it.
+std::string why_unsound(const Measurement& measurement, const std::vector<std::string>& channels);
 
 /// @throws stillhand::ConfigError when sizes disagree, a value is not finite (names channel and
 /// sample), the rate is not positive or the stretches do not cover the samples.

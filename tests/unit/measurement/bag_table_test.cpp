@@ -174,5 +174,41 @@ TEST(BagTableTest, AFileWithoutSuchMessagesIsRefused) {
   EXPECT_THAT(error_of(path), HasSubstr("no topic to read (/json: got messages in 'json'"));
 }
 
+// The clock of the recording machine is set back by 5 s in the middle.
+TEST(BagTableTest, StampsThatGoBackBeginANewStretchAndAreNamed) {
+  const std::string path = path_of("back.mcap");
+  Bag bag(path);
+  for (std::int64_t i = 0; i < 2000; ++i) {
+    const std::int64_t time_ns = i * 10'000'000 - (i < 1000 ? 0 : 5'000'000'000) + 1'000'000'000;
+    bag.imu(time_ns, 1e-3 * static_cast<double>(i) + 0.1 * static_cast<double>(i % 3));
+    bag.wrench(time_ns, static_cast<double>(i % 7));
+  }
+  bag.close();
+  const auto sut = read_measurement(
+      path, mapped({"/imu/data.linear_acceleration.y=a_y", "/stick/wrench.wrench.force.y=f"}));
+  ASSERT_EQ(sut.stretches.size(), 2u);
+  EXPECT_EQ(sut.size(), 2000u);
+  EXPECT_DOUBLE_EQ(sut.rate_hz, 100.0);
+  // In the order in which they came.
+  EXPECT_DOUBLE_EQ(sut.find("a_y")->values[1000], 1.0 + 0.1 * (1000 % 3));
+  ASSERT_EQ(sut.screening.size(), 1u);
+  EXPECT_EQ(sut.screening[0].what, "time_goes_back");
+  EXPECT_NEAR(sut.screening[0].times_s[0], 9.99, 1e-9);
+}
+
+TEST(BagTableTest, StampsThatGoBackInOneTopicAloneAreRefused) {
+  const std::string path = path_of("back_alone.mcap");
+  Bag bag(path);
+  for (std::int64_t i = 0; i < 400; ++i) {
+    bag.imu(i * 10'000'000, 0.1 * static_cast<double>(i % 7));
+    bag.wrench(i * 10'000'000 - (i < 200 ? 0 : 1'000'000'000) + 1'000'000'000,
+               static_cast<double>(i % 5));
+  }
+  bag.close();
+  EXPECT_THAT(error_of(path, mapped({"/imu/data.linear_acceleration.y=a_y",
+                                     "/stick/wrench.wrench.force.y=f"})),
+              HasSubstr("time stamps that go back, but not those of /imu/data"));
+}
+
 }  // namespace
 }  // namespace stillhand::measurement

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stillhand::measurement {
+
+/// Rows [first, end).
+struct Place {
+  std::size_t first = 0;
+  std::size_t end = 0;
+
+  [[nodiscard]] std::size_t rows() const noexcept { return end - first; }
+};
+
+/// Bad rows of one column.
+struct BadRows {
+  std::string what;
+  std::vector<Place> places;  ///< in order
+  std::string detail;         ///< the value, "32767"
+
+  [[nodiscard]] std::size_t rows() const noexcept;
+};
+
+/// Runs of equal values, those of one row included; none where they could show nothing: no run has
+/// three rows, and fewer than a quarter of the rows repeat the one before.
+std::vector<Place> equal_runs(const std::vector<double>& values);
+
+/// More than 16 values: fewer are a state or a switch, which no range and no noise describes.
+bool has_many_levels(const std::vector<double>& values);
+
+/// The tests of one column of many levels, README ME-5 to ME-10.  Pure; linear in the rows.
+/// @param values  at least 200
+std::vector<BadRows> far_values(const std::vector<double>& values);
+/// @param quiet  asked of a place and its two neighbours: does no other channel jump there?
+std::optional<BadRows> spikes_in(const std::vector<double>& values, double rate_hz,
+                                 const std::function<bool(const Place&)>& quiet);
+/// @param should_move  asked of a place: would a sound channel have moved there?
+std::optional<BadRows> stuck_in(const std::vector<double>& values, const std::vector<Place>& runs,
+                                double rate_hz,
+                                const std::function<bool(const Place&)>& should_move);
+std::optional<BadRows> clipped_in(const std::vector<double>& values,
+                                  const std::vector<Place>& runs);
+/// Rows for which a value is held, on the mean; 0: it is not held.
+double held_rows(const std::vector<double>& values, const std::vector<Place>& runs, double rate_hz);
+bool counts_rows(const std::vector<double>& values);
+
+/// Eq. ME-6: how far a row lies from the cubic through its four neighbours, and how far the rows of
+/// the channel usually do.
+double off_neighbours(const std::vector<double>& values, std::size_t row);
+/// 1.48 times the median of the above, which is one standard deviation of a normal one; 0 where
+/// half of the rows lie on the cubic.
+double usual_off_neighbours(const std::vector<double>& values);
+
+}  // namespace stillhand::measurement

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace stillhand::diagnosis {
+
+/// Clock of the output against the input's: at t the output answers the input of t - delay_s(t).
+struct Alignment {
+  double lag_s = 0.0;     ///< [s] in the middle of the record; below 0: the output leads
+  double drift = 0.0;     ///< [s/s] by which the lag grows
+  double middle_s = 0.0;  ///< [s] from the first sample
+
+  [[nodiscard]] double delay_s(double time_s) const noexcept {
+    return lag_s + drift * (time_s - middle_s);
+  }
+};
+
+/// METHOD Eq. DG-78: the lag and its drift at which the correlations of the record's segments add
+/// up to most, whatever the body between them.  Pure.
+///
+///   max over (L, d) of | sum_s c_s(L + d (t_s - T/2)) |,  c_s(l) = sum_{t in s} y(t) x(t - l)
+///
+/// |L| to the smaller of 10 s and a quarter of the record, |d| to 0.02.
+/// @param x, y  one length, at rate_hz; at least 8 s
+Alignment aligned(const std::vector<double>& x, const std::vector<double>& y, double rate_hz);
+
+/// What to try of it: a body lags by itself, which the correlations don't tell from the clock, so
+/// that its part, 0 to 0.15 s, is left to the body.  Empty: nothing but a body's lag.
+std::vector<Alignment> readings(const Alignment& found);
+
+/// x as the output's clock sees it; the ends are held.
+std::vector<double> moved(const std::vector<double>& x, double rate_hz, const Alignment& by);
+
+/// "the output leads the input by 2 s", "two clocks 8300 ppm apart, and ..."
+std::string in_words(const Alignment& alignment);
+
+/// What an acceleration explains of a force.
+struct Motion {
+  std::string input;
+  std::string input_unit;
+  double input_m_s2 = 0.0;  ///< [m/s^2] RMS about the mean
+  std::string output;
+  std::string output_unit;
+  double explained_n = 0.0;  ///< [N] RMS
+};
+
+/// METHOD Eq. DG-80: why the two can't be of one hand, by the mass that their ratio is; empty: they
+/// can, or are not `a_.. [m/s^2]` and `f [N]`.
+std::string unlikely_mass(const Motion& motion);
+
+/// [-] of the output's power that a model must leave for another clock to be looked for.
+inline constexpr double kAlignmentGate = 0.01;
+/// [-] of the squared error that another clock must leave at most: a fifth.  On a position that an
+/// integrator holds (a servo), a drift that is none left a quarter.
+inline constexpr double kBetterClock = 0.2;
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/measurement/sample_screen.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/spoiled_recordings.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+using diagnosis::SampleFault;
+using recording::Recording;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const SampleFault* find(const std::vector<SampleFault>& faults, const spoiled::Case& each) {
+  const auto at = std::ranges::find_if(faults, [&](const SampleFault& fault) {
+    return fault.channel == each.channel && fault.what == each.what;
+  });
+  return at == faults.end() ? nullptr : &*at;
+}
+
+TEST(SampleScreenTest, EveryFaultIsNamedWithItsChannelAndNoOther) {
+  for (const spoiled::Case& each : spoiled::cases()) {
+    Recording rows = spoiled::recorded(each);
+    const std::vector<SampleFault> sut = screen(rows, {});
+    if (each.what.empty()) {
+      EXPECT_THAT(sut, IsEmpty()) << each.name << ": " << (sut.empty() ? "" : sut[0].says);
+      EXPECT_EQ(rows.row_count(), spoiled::kRows) << each.name;
+      continue;
+    }
+    const SampleFault* found = find(sut, each);
+    ASSERT_NE(found, nullptr) << each.name;
+    EXPECT_EQ(found->unsound, each.no_model) << each.name;
+    for (const SampleFault& fault : sut) EXPECT_EQ(fault.what, each.what) << each.name;
+  }
+}
+
+// Rows that are left out are those of the fault: nothing beyond the signals' own range is left.
+TEST(SampleScreenTest, WhatIsLeftLiesInTheRangeOfTheGoodRecording) {
+  const Recording good = spoiled::known_body();
+  for (const spoiled::Case& each : spoiled::cases()) {
+    if (each.no_model || each.what.empty()) continue;
+    Recording rows = spoiled::recorded(each);
+    (void)screen(rows, {});
+    EXPECT_GT(rows.row_count(), spoiled::kRows / 2) << each.name;
+    for (std::size_t c = 0; c < 2; ++c) {
+      const auto [low, high] = std::ranges::minmax(good.columns[c].values);
+      const auto [least, most] = std::ranges::minmax(rows.columns[c].values);
+      EXPECT_GE(least, low) << each.name;
+      EXPECT_LE(most, high) << each.name;
+    }
+  }
+}
+
+TEST(SampleScreenTest, TheShareAndTheTimeAreThoseOfTheFault) {
+  Recording rows = spoiled::known_body();
+  spoiled::fill(rows.columns[1].values, 3000, 3030, 32767.0);
+  const auto sut = screen(rows, {});
+  ASSERT_EQ(sut.size(), 1u);
+  EXPECT_DOUBLE_EQ(sut[0].share, 30.0 / 6000.0);
+  EXPECT_EQ(sut[0].times_s, std::vector{30.0});
+  EXPECT_EQ(rows.row_count(), spoiled::kRows - 30);
+  EXPECT_THAT(sut[0].says, HasSubstr("left out"));
+}
+
+TEST(SampleScreenTest, AChannelOutsideOfTheModelIsLeftOutWhole) {
+  Recording rows = spoiled::known_body();
+  rows.columns.push_back({"grip", "N", rows.columns[1].values});
+  spoiled::Dice dice;
+  for (double& value : rows.columns[2].values) value += 0.1 * dice.next();
+  spoiled::fill(rows.columns[2].values, 2000, 4000, 0.0);
+  rows.columns.push_back({"count", "-", {}});
+  for (std::size_t n = 0; n < spoiled::kRows; ++n) {
+    rows.columns[3].values.push_back(static_cast<double>(n));
+  }
+  const auto sut = screen(rows, {});
+  ASSERT_EQ(sut.size(), 2u);
+  EXPECT_EQ(sut[0].what, "stuck");
+  EXPECT_EQ(sut[1].what, "counter");
+  EXPECT_EQ(rows.columns.size(), 2u);
+  EXPECT_EQ(rows.row_count(), spoiled::kRows);
+}
+
+TEST(SampleScreenTest, AFaultOfMostRowsMakesTheChannelUnsound) {
+  Recording rows = spoiled::known_body();
+  spoiled::fill(rows.columns[1].values, 2000, 5500, 1.25);
+  const auto sut = screen(rows, {});
+  ASSERT_EQ(sut.size(), 1u);
+  EXPECT_TRUE(sut[0].unsound);
+  EXPECT_EQ(rows.row_count(), spoiled::kRows);
+}
+
+TEST(SampleScreenTest, AHeldChannelOutsideOfTheModelIsLeftOutToo) {
+  Recording rows = spoiled::known_body();
+  rows.columns.push_back({"a_x", "m/s^2", rows.columns[0].values});
+  spoiled::hold(rows.columns[2].values, 5.0);
+  const auto sut = screen(rows, {});
+  ASSERT_EQ(sut.size(), 1u);
+  EXPECT_EQ(sut[0].channel, "a_x");
+  EXPECT_EQ(sut[0].what, "held");
+  EXPECT_FALSE(sut[0].unsound);
+  EXPECT_EQ(rows.columns.size(), 2u);
+}
+
+template <typename ValueAt>
+recording::Column channel(std::string name, std::string unit, ValueAt value_at) {
+  recording::Column out{std::move(name), std::move(unit), {}};
+  for (std::size_t n = 0; n < spoiled::kRows; ++n) {
+    out.values.push_back(value_at(n, static_cast<double>(n) / spoiled::kRate_hz));
+  }
+  return out;
+}
+
+// What good recordings hold; every kind is screened next to the known body.
+TEST(SampleScreenTest, GoodChannelsHaveNoFault) {
+  spoiled::Dice dice;
+  const auto noise = [&dice] { return dice.next() - 0.5; };
+  spoiled::Dice flips;
+  double omega = 0.0;
+  bool count = false;
+  const double quantum_rad = 2.0 * std::numbers::pi / 4096.0;
+  // A pegged stick: its encoder flips by one count now and then.
+  const auto pegged_rate = [&](std::size_t, double) {
+    double step = 0.0;
+    if (flips.next() < 0.01) {
+      step = (count ? -1.0 : 1.0) * quantum_rad * spoiled::kRate_hz;
+      count = !count;
+    }
+    return omega += 0.6 * (step - omega);
+  };
+  const std::vector<recording::Column> channels{
+      channel("omega", "rad/s", pegged_rate),
+      // A hand that slows down, rests for 25 s and moves on; 4096 counts.
+      channel("theta", "rad",
+              [&](std::size_t, double t_s) {
+                const double fade = 0.3;
+                const double moved_s = t_s < 20.0 ? t_s
+                                       : t_s < 45.0
+                                           ? 20.0 + fade * (1.0 - std::exp(-(t_s - 20.0) / fade))
+                                           : t_s - 25.0 + fade * std::exp(-(t_s - 45.0) / fade);
+                const double angle_rad = 0.2 * std::sin(4.0 * moved_s);
+                return std::round(angle_rad / quantum_rad) * quantum_rad;
+              }),
+      channel("temp", "degC",
+              [](std::size_t, double t_s) {
+                return std::round(200.0 + 20.0 * std::sin(0.1 * t_s)) / 10.0;
+              }),
+      channel("button", "-", [](std::size_t n, double) { return n % 2000 < 5 ? 1.0 : 0.0; }),
+      channel(
+          "x_r", "m",
+          [](std::size_t n, double t_s) { return n / 1000 % 2 == 0 ? 0.1 : 0.2 * std::sin(t_s); }),
+      // Ramps at one speed from level to level, and rests there.
+      channel("x_p", "m",
+              [at = 0.0](std::size_t n, double) mutable {
+                if (n % 300 < 37) at += n / 300 % 3 == 0 ? -0.02 : 0.011;
+                return at;
+              }),
+      // New levels at even times: a command, in volts.
+      channel("u", "V",
+              [&noise, at = 0.0](std::size_t n, double) mutable {
+                return at = n % 20 == 0 ? noise() : at;
+              }),
+      // Bursts of noise, and silence.
+      channel("drive", "V",
+              [&noise](std::size_t n, double) { return n / 500 % 2 == 0 ? noise() : 0.0; }),
+      // Footfalls of three rows, not all equally strong, once a second, over a little noise.
+      channel("belt", "N",
+              [&noise](std::size_t n, double) {
+                const double shape[] = {0.6, 1.0, 0.5};
+                const std::size_t at = n % 97;
+                return 0.1 * noise() + (at < 3 ? (40.0 + 10.0 * noise()) * shape[at] : 0.0);
+              }),
+      // The same, so short that each is one row.
+      channel("heel", "N",
+              [&noise](std::size_t n, double) {
+                return 0.1 * noise() + (n % 97 == 5 ? 40.0 + 10.0 * noise() : 0.0);
+              }),
+      // Grip: none for seconds, then up to 20 N within 0.1 s.
+      channel("grip", "N",
+              [](std::size_t n, double) {
+                const double at = static_cast<double>(n % 1500) / 1500.0;
+                return at < 0.5 ? 0.0
+                                : 20.0 *
+                                      std::sin(std::numbers::pi * std::min(1.0, 20.0 * (at - 0.5)) /
+                                               2.0) *
+                                      (1.0 - at) * 2.0;
+              }),
+      // A table that is driven to its end and back, one trapezoid after another.
+      channel("table", "m",
+              [](std::size_t n, double) {
+                return std::clamp(std::abs(static_cast<double>(n % 400) - 200.0) / 100.0, 0.5, 1.5);
+              }),
+      channel("small", "m/s^2", [&noise](std::size_t, double) { return 1e-9 * noise(); })};
+  for (const recording::Column& channel : channels) {
+    Recording rows = spoiled::known_body();
+    rows.columns.push_back(channel);
+    const auto sut = screen(rows, {});
+    EXPECT_THAT(sut, IsEmpty()) << channel.name << ": " << (sut.empty() ? "" : sut[0].says);
+    EXPECT_EQ(rows.columns.size(), 3u) << channel.name;
+  }
+}
+
+// As the input and as the output, with the other one as it is.
+TEST(SampleScreenTest, AChannelThatRestsOrIsHitHasNoFault) {
+  const auto rest = [](std::vector<double>& x) { spoiled::fill(x, 0, 300, 0.0); };
+  const auto ends = [](std::vector<double>& x) {
+    // Comes to rest within a second, and rests to the end.
+    for (std::size_t n = 4800; n < x.size(); ++n) {
+      x[n] = n < 4900 ? x[n] * static_cast<double>(4900 - n) / 100.0 : 0.0;
+    }
+    for (std::size_t n = 4890; n < 4900; ++n) x[n] = 1e-6 * static_cast<double>(4900 - n);
+  };
+  const auto tapped = [](std::vector<double>& x) {
+    for (const std::size_t row : {611u, 2222u, 4000u, 4800u, 5500u, 5801u}) {
+      for (std::size_t k = 0; k < 4; ++k)
+        x[row + k] += 40.0 * std::sin(0.7 * (1.0 + static_cast<double>(k)));
+    }
+  };
+  for (const std::size_t channel : {0u, 1u}) {
+    for (int which = 0; which < 3; ++which) {
+      Recording rows = spoiled::known_body();
+      std::vector<double>& x = rows.columns[channel].values;
+      which == 0 ? rest(x) : which == 1 ? ends(x) : tapped(x);
+      const auto sut = screen(rows, {});
+      EXPECT_THAT(sut, IsEmpty()) << channel << which << (sut.empty() ? "" : sut[0].says);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::measurement
