@@ -54,6 +54,7 @@ class Loop {
 std::string why_not_augmented(const Verdict& verdict) {
   if (!verdict.not_carried.empty()) return verdict.not_carried;
   if (verdict.strongest() != nullptr) return {};
+  if (verdict.conclusion() == kNoModel) return "the acceleration does not explain the force";
   return verdict.conclusion() == kUnexplained
              ? "the residual has a cause that no kind of effect explains"
              : "nothing is missing that counts";

@@ -285,7 +285,13 @@ std::string summary_json(const LoopRecord& record) {
   return summary.dump(2) + "\n";
 }
 
-std::string nothing_that_counts(double least_force_n) {
+std::string without_effect(const Verdict& verdict, double least_force_n) {
+  const std::string conclusion = verdict.conclusion();
+  if (conclusion == kNoModel)
+    return "The acceleration does not explain the force: there is no model.";
+  if (conclusion == kUnexplained) {
+    return "The residual has a cause that no kind of effect explains.";
+  }
   if (least_force_n <= 0.0) return "The model lacks nothing.";
   return "The model lacks nothing of " + report::short_number(least_force_n) +
          " N RMS or more (--least-force).";

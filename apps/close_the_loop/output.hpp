@@ -63,8 +63,8 @@ report::Table treatment_table(const ConvertedModel& control, bool used);
 std::string summary_json(const LoopRecord& record);
 /// Tables and verdict, to standard output.
 void print_result(const LoopRecord& record);
-/// One sentence of an output in newtons; 0: of another one.
-std::string nothing_that_counts(double least_force_n);
+/// One sentence on a verdict without an effect.  @param least_force_n  0: the output is no force
+std::string without_effect(const Verdict& verdict, double least_force_n);
 /// What became of C+, with the rows that decide, METHOD Eq. CL-10; empty: it is C'.
 std::string kept_text(const LoopRecord& record);
 /// "mean [low, high]" of an estimate, or the mean alone.

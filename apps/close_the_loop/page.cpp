@@ -102,9 +102,7 @@ std::string lead(const LoopRecord& record) {
   };
   const std::string lacks = verdict.strongest() != nullptr
                                 ? "The paper's model lacks: " + verdict.kind() + ". "
-                            : verdict.conclusion() == kUnexplained
-                                ? "The residual has a cause that no kind explains. "
-                                : nothing_that_counts(verdict.body.options.least_force_n) + " ";
+                                : without_effect(verdict, verdict.body.options.least_force_n) + " ";
   return lacks + "Of the tracking error that the motion causes, C removes " +
          percent(restored(record.conditions, "C", error)) + ", C' " +
          percent(restored(record.conditions, "C'", error)) + ", C+ " +
@@ -131,7 +129,7 @@ void add_verdict(report::Page& page, const LoopResult& result,
   const Verdict& verdict = result.verdict();
   page.section("What the model lacked");
   if (verdict.strongest() == nullptr) {
-    page.paragraph(nothing_that_counts(verdict.body.options.least_force_n));
+    page.paragraph(without_effect(verdict, verdict.body.options.least_force_n));
   }
   std::vector<std::string> findings;
   for (const Finding& each : verdict.findings) {

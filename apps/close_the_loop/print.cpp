@@ -53,9 +53,7 @@ void print_result(const LoopRecord& record) {
   print_measures(record.conditions);
   const Verdict& verdict = result.verdict();
   if (verdict.strongest() == nullptr) {
-    fmt::print("{}\n", verdict.conclusion() == kUnexplained
-                           ? "The residual has a cause that no kind of effect explains."
-                           : nothing_that_counts(verdict.body.options.least_force_n));
+    fmt::print("{}\n", without_effect(verdict, verdict.body.options.least_force_n));
   }
   for (const Finding& finding : verdict.findings) {
     fmt::print("{}: {}{} in the {}, {} N{}: {}\n", finding.counts ? "missing" : "found",

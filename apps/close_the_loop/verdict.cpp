@@ -108,7 +108,10 @@ double detectable_n(const Verdict& verdict, bool in_drive) {
 
 std::string Verdict::conclusion() const {
   if (strongest() != nullptr) return kFound;
-  return body.verdict() == kUnexplained ? kUnexplained : kNothing;
+  for (const char* other : {kUnexplained, kNoModel}) {
+    if (body.verdict() == other) return other;
+  }
+  return kNothing;
 }
 
 Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,

@@ -25,6 +25,7 @@ inline constexpr const char* kLoadCell = "load cell";
 inline constexpr const char* kFound = "effects found";
 inline constexpr const char* kUnexplained = "unexplained residual";
 inline constexpr const char* kNothing = "nothing missing";
+inline constexpr const char* kNoModel = "no model";
 
 /// The recordings that a verdict is made from; it uses nothing else of the rig.
 struct Evidence {
@@ -78,7 +79,7 @@ struct Verdict {
                ? body.carried
                : diagnosis::carried_as_it_is(body.baseline.model);
   }
-  /// kFound, kUnexplained or kNothing.
+  /// kFound, kUnexplained, kNoModel or kNothing.
   [[nodiscard]] std::string conclusion() const;
 };
 

@@ -52,8 +52,10 @@ void check_different(const std::vector<std::string>& recordings) {
 
 diagnosis::Measurement read_all(const Arguments& arguments) {
   std::vector<diagnosis::Measurement> parts;
+  measurement::ReadOptions read = arguments.read;
+  read.channels = {arguments.options.inputs, arguments.options.output};
   for (const std::string& path : arguments.recordings) {
-    parts.push_back(measurement::read_measurement(path, arguments.read));
+    parts.push_back(measurement::read_measurement(path, read));
   }
   return parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
 }
@@ -83,6 +85,10 @@ int run(const Arguments& arguments) {
   };
   const diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
   progress.finish();
+  if (result.no_model && files.wants("--save")) {
+    throw ConfigError("--save", "no model (" + result.no_model->why + ")",
+                      "no --save, or recordings whose inputs explain the output");
+  }
   if (files.wants("--save")) {
     files.set_json("--save",
                    diagnosis::model_json(result.model, result.carried, result.baseline.model));

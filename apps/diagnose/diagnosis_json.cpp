@@ -9,6 +9,7 @@
 
 #include "apps/diagnose/detection_json.hpp"
 #include "apps/diagnose/page/wording.hpp"
+#include "apps/measurement/screening_json.hpp"
 #include "apps/report/or_null.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 
@@ -105,6 +106,11 @@ ordered_json error_json(const diagnosis::HeldOutError& error) {
           {"ci95", {error.low, error.high}}};
 }
 
+ordered_json no_model_json(const Diagnosis& diagnosis) {
+  if (!diagnosis.no_model) return nullptr;
+  return {{"reason", diagnosis.no_model->reason}, {"why", diagnosis.no_model->why}};
+}
+
 // Outputs in other units have no threshold.
 double least_force_json(const Diagnosis& diagnosis) {
   return diagnosis.output_unit == "N" ? diagnosis.options.least_force_n : 0.0;
@@ -169,6 +175,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                           {"detection_limit", diagnosis.detection_limit},
                           {"detection_limits", limits},
                           {"verdict", diagnosis.verdict()},
+                          {"no_model", no_model_json(diagnosis)},
+                          {"screening", measurement::screening_json(diagnosis.screening)},
                           {"least_force_n", least_force_json(diagnosis)},
                           {"effects", effects},
                           {"final", error_json(diagnosis.final_error)},
@@ -196,8 +204,12 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
         how);
   };
   add("verdict       {}{}\n", diagnosis.verdict(),
-      none_carried(diagnosis) ? ", and the model that is saved carries none of them" : "");
-  if (!diagnosis.has_effect_that_counts() && !diagnosis.effects.empty()) {
+      !diagnosis.no_model && none_carried(diagnosis)
+          ? ", and the model that is saved carries none of them"
+          : "");
+  if (diagnosis.no_model) {
+    add("              {}: {}\n", diagnosis.no_model->reason, diagnosis.no_model->why);
+  } else if (!diagnosis.has_effect_that_counts() && !diagnosis.effects.empty()) {
     add("              {}\n", too_small_in_words(diagnosis));
   }
   add("model         {} from {} to {}, order {}, at {:.4g} Hz\n", diagnosis.model_class,

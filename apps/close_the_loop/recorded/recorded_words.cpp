@@ -79,9 +79,7 @@ std::string finding_text(const Finding& finding, const std::string& unit) {
 std::string conclusion_text(const RecordedLoop& loop) {
   const Verdict& verdict = loop.verdict;
   if (verdict.strongest() != nullptr) return {};
-  return verdict.conclusion() == kUnexplained
-             ? "The residual has a cause that no kind of effect explains."
-             : nothing_that_counts(loop.unit == "N" ? verdict.body.options.least_force_n : 0.0);
+  return without_effect(verdict, loop.unit == "N" ? verdict.body.options.least_force_n : 0.0);
 }
 
 std::string unseen_size_text(const RecordedLoop& loop) {

@@ -141,8 +141,13 @@ Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& re
       "Diagnosis: " + found.options.output + " from " + first.substr(first.find_last_of('/') + 1) +
           (recordings.size() == 1 ? "" : " and " + std::to_string(recordings.size() - 1) + " more"),
       verdict_in_words(found));
+  std::vector<std::string> notes = found.notes;
+  for (const diagnosis::SampleFault& fault : found.screening) {
+    page.warning(fault.says);
+    std::erase(notes, fault.says);
+  }
   page.facts(facts_of(evidence, recordings));
-  if (!found.notes.empty()) page.list(found.notes);
+  if (!notes.empty()) page.list(notes);
   add_errors(page, evidence, drawings);
   add_effects(page, evidence, drawings);
   add_remainder(page, found, drawings);

@@ -146,6 +146,9 @@ std::string too_small_in_words(const Diagnosis& diagnosis) {
 
 std::string verdict_in_words(const Diagnosis& diagnosis) {
   const std::string model = model_name(diagnosis);
+  if (diagnosis.no_model) {
+    return "No model (" + diagnosis.no_model->reason + "): " + diagnosis.no_model->why + ".";
+  }
   const std::string too_small = too_small_in_words(diagnosis);
   if (diagnosis.has_effect_that_counts()) {
     std::vector<std::string> names;

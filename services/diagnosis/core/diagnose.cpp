@@ -365,6 +365,7 @@ bool Diagnosis::has_effect_that_counts() const {
 }
 
 std::string Diagnosis::verdict() const {
+  if (no_model) return "no model";
   if (has_effect_that_counts()) return "effects found";
   return unexplained ? "unexplained residual" : "nothing missing";
 }
@@ -379,7 +380,14 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   };
   Diagnosis diagnosis;
   diagnosis.options = options;
+  diagnosis.screening = measurement.screening;
   check(measurement);
+  std::vector<std::string> channels = options.inputs;
+  channels.push_back(options.output);
+  if (std::string why = why_unsound(measurement, channels); !why.empty()) {
+    diagnosis.no_model = {"samples", std::move(why)};
+    diagnosis.options.search.most_effects = 0;
+  }
   step("preparing");
   const Measurement working = working_set(measurement, options.inputs);
   diagnosis.notes = working.notes;
@@ -397,8 +405,8 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
     const Screening screening(diagnosis.baseline.model, signals, blocks, impulse_response);
     diagnosis.before = detected(screening, excitation);
   }
-  diagnosis.search = search(diagnosis.baseline, signals, blocks, options.search, options.for_each,
-                            [&step](const std::string& name) {
+  diagnosis.search = search(diagnosis.baseline, signals, blocks, diagnosis.options.search,
+                            options.for_each, [&step](const std::string& name) {
                               step(name);
                               return true;
                             });
@@ -417,6 +425,18 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
       carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks, counts);
   add_ties_with_time(diagnosis);
   add_carried(diagnosis, signals, blocks, variance);
+  if (!diagnosis.no_model) {
+    diagnosis.no_model = no_model_of(working, signals, blocks, diagnosis.model,
+                                     diagnosis.final_error.rmse, options.order);
+    if (diagnosis.no_model && !diagnosis.effects.empty()) {
+      DiagnoseOptions bare = options;
+      bare.search.most_effects = 0;
+      Diagnosis without_effects = diagnose(measurement, bare);
+      without_effects.options = options;
+      without_effects.no_model = diagnosis.no_model;
+      return without_effects;
+    }
+  }
   const Screening screening(diagnosis.model, signals, blocks, impulse_response);
   diagnosis.after = detected(screening, excitation);
   if (!is_rounding(diagnosis.final_error.rmse, signals)) {

@@ -11,6 +11,7 @@
 #include "services/diagnosis/core/detection/noise_floor.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/size.hpp"
+#include "services/diagnosis/core/no_model.hpp"
 #include "services/diagnosis/core/search.hpp"
 #include "services/diagnosis/core/unexplained.hpp"
 
@@ -86,15 +87,17 @@ struct Diagnosis {
   std::vector<FoundEffect> effects;
   HeldOutError final_error;
   std::optional<Unexplained> unexplained;
-  double detection_limit = 0.0;  ///< [unit of the output] of a further effect, Eq. DG-62
-  Model model;                   ///< baseline and effects, fitted together to all samples
-  CarriedModel carried;          ///< what predicts other recordings
-  HeldOutError carried_error;    ///< of `carried`, judged as final_error
-  DetectionResult before;        ///< of the baseline's residual
-  DetectionResult after;         ///< of the final model's
-  SearchResult search;           ///< the candidates of every step
+  std::optional<NoModel> no_model;     ///< the inputs don't explain the output
+  std::vector<SampleFault> screening;  ///< of the recording
+  double detection_limit = 0.0;        ///< [unit of the output] of a further effect, Eq. DG-62
+  Model model;                         ///< baseline and effects, fitted together to all samples
+  CarriedModel carried;                ///< what predicts other recordings
+  HeldOutError carried_error;          ///< of `carried`, judged as final_error
+  DetectionResult before;              ///< of the baseline's residual
+  DetectionResult after;               ///< of the final model's
+  SearchResult search;                 ///< the candidates of every step
 
-  /// "effects found" if one of them counts.
+  /// "no model", or "effects found" if one of them counts.
   [[nodiscard]] std::string verdict() const;
   [[nodiscard]] bool has_effect_that_counts() const;
   /// [unit of the output] the size from which a further effect of that kind is found as often as

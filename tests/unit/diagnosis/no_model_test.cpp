@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/diagnosis/core/no_model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/diagnosis/core/alignment.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
+#include "tests/support/spoiled_recordings.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+Measurement measured(const spoiled::Case& each) {
+  const recording::Recording rows = spoiled::recorded(each);
+  Measurement out;
+  out.source = each.name;
+  out.rate_hz = spoiled::kRate_hz;
+  for (const recording::Column& column : rows.columns) {
+    out.channels.push_back({column.name, column.unit, column.values});
+  }
+  out.weight.assign(spoiled::kRows, 1.0);
+  out.stretches = {{0, spoiled::kRows, 0.0}};
+  return out;
+}
+
+const spoiled::Case& named(const std::string& name) {
+  return *std::ranges::find(spoiled::cases(), name, &spoiled::Case::name);
+}
+
+TEST(NoModelTest, AGoodRecordingHasAModel) {
+  EXPECT_EQ(diagnose(measured(named("as it is")), {}).verdict(), "nothing missing");
+}
+
+TEST(NoModelTest, UnrelatedChannelsClocksAndUnitsAreNamed) {
+  for (const auto& [name, reason] :
+       {std::pair{"two seconds late", "clocks"}, std::pair{"two seconds early", "clocks"},
+        std::pair{"a clock 1.5 % slow", "clocks"}, std::pair{"thousandths of newtons", "unit"},
+        std::pair{"thousands of newtons", "unit"}, std::pair{"mm/s^2", "unit"},
+        std::pair{"another recording's force", "unrelated"},
+        std::pair{"noise for a signal", "unrelated"}}) {
+    const Diagnosis sut = diagnose(measured(named(name)), {});
+    EXPECT_EQ(sut.verdict(), "no model") << name;
+    ASSERT_TRUE(sut.no_model) << name;
+    EXPECT_EQ(sut.no_model->reason, reason) << name << ": " << sut.no_model->why;
+    EXPECT_TRUE(sut.effects.empty()) << name;
+  }
+}
+
+// The effect of that name, or the reason: in both directions.
+TEST(NoModelTest, ClocksThatRunApartAreFoundInBothDirections) {
+  for (const char* name : {"a clock 0.83 % fast", "a clock 0.83 % slow", "a clock 1.5 % fast"}) {
+    const Diagnosis sut = diagnose(measured(named(name)), {});
+    if (sut.no_model) {
+      EXPECT_EQ(sut.no_model->reason, "clocks") << name << ": " << sut.no_model->why;
+    } else {
+      ASSERT_FALSE(sut.effects.empty()) << name;
+      EXPECT_EQ(sut.effects.front().effect.kind, "clock_drift") << name;
+    }
+  }
+}
+
+// A recording, and the same with its force times `by`.
+Measurement joined(double by) {
+  Measurement out = measured(named("as it is"));
+  for (Channel& channel : out.channels) {
+    const std::vector<double> values = channel.values;
+    for (const double value : values) {
+      channel.values.push_back(channel.name == "f" ? by * value : value);
+    }
+  }
+  out.weight.assign(2 * spoiled::kRows, 1.0);
+  out.stretches.push_back({spoiled::kRows, 2 * spoiled::kRows, 100.0, 1});
+  return out;
+}
+
+TEST(NoModelTest, ASignOrAUnitOfOneOfTwoRecordingsIsNamed) {
+  for (const auto& [by, reason] : {std::pair{-1.0, "sign"}, std::pair{4.448, "unit"},
+                                   std::pair{1e-3, "unit"}, std::pair{9.81, "unit"}}) {
+    const Diagnosis sut = diagnose(joined(by), {});
+    ASSERT_TRUE(sut.no_model) << by << ": " << sut.verdict();
+    EXPECT_EQ(sut.no_model->reason, reason) << by << ": " << sut.no_model->why;
+  }
+}
+
+// Persons differ by less than a unit does.
+TEST(NoModelTest, RecordingsOfTwoPersonsHaveAModel) {
+  EXPECT_FALSE(diagnose(joined(1.0), {}).no_model);
+  EXPECT_FALSE(diagnose(joined(2.0), {}).no_model);
+}
+
+// Unsound samples end the search before an effect is named.
+TEST(NoModelTest, UnsoundSamplesHaveNoModelAndNoEffect) {
+  Measurement held = measured(named("held at 25 Hz"));
+  held.screening = {{"a_y", "held", {0.0}, 1.0, "a_y: held", true}};
+  const Diagnosis sut = diagnose(held, {});
+  EXPECT_EQ(sut.verdict(), "no model");
+  EXPECT_EQ(sut.no_model->reason, "samples");
+  EXPECT_TRUE(sut.effects.empty());
+}
+
+// The lag of the correlations' peak is that of the clock and up to 0.2 s of the body.
+TEST(NoModelTest, TheLagAndTheDriftAreThoseOfTheClock) {
+  const auto sut = [](const char* name) {
+    const Measurement each = measured(named(name));
+    return aligned(each.channels[0].values, each.channels[1].values, each.rate_hz);
+  };
+  EXPECT_NEAR(sut("two seconds late").lag_s, 2.1, 0.1);
+  EXPECT_NEAR(sut("two seconds early").lag_s, -1.9, 0.1);
+  // Two steps of the search over a minute are 0.01 s / 60 s.
+  EXPECT_NEAR(sut("a clock 1.5 % slow").drift, -0.015, 3e-4);
+  EXPECT_TRUE(readings(sut("as it is")).empty());
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
