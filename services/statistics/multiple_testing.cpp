@@ -40,16 +40,4 @@ std::vector<double> holm_adjusted(const std::vector<double>& p) {
   return out;
 }
 
-std::vector<double> benjamini_hochberg_adjusted(const std::vector<double>& p) {
-  const std::vector<std::size_t> order = ascending_order(p);
-  std::vector<double> out(p.size());
-  double smallest = 1.0;
-  for (std::size_t rank = order.size(); rank > 0; --rank) {
-    const double factor = static_cast<double>(p.size()) / static_cast<double>(rank);
-    smallest = std::min(smallest, factor * p[order[rank - 1]]);
-    out[order[rank - 1]] = smallest;
-  }
-  return out;
-}
-
 }  // namespace stillhand::statistics

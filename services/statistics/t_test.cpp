@@ -76,15 +76,6 @@ TTest paired_t_test(const std::vector<double>& first, const std::vector<double>&
                  confidence);
 }
 
-TTest one_sample_t_test(const std::vector<double>& values, double reference, double confidence) {
-  require_sample(values, 2, "t_test.values");
-  require_sample({reference}, 1, "t_test.reference");
-  require_inside_unit_interval(confidence, "t_test.confidence");
-  std::vector<double> differences(values);
-  for (double& x : differences) x -= reference;
-  return test_of(differences, std::max(largest_magnitude(values), std::abs(reference)), confidence);
-}
-
 WelchTest welch_t_test(const std::vector<double>& first, const std::vector<double>& second,
                        double confidence) {
   require_sample(first, 2, "t_test.first");

@@ -14,7 +14,7 @@ namespace stillhand::statistics {
 /// Differences carry the unit of the values.  p comes from the tail itself, so 1e-300 is as exact
 /// as 0.1; below the smallest double it is 0.
 struct TTest {
-  std::size_t n = 0;  ///< pairs or values
+  std::size_t n = 0;  ///< pairs
   double mean_difference = 0.0;
   double standard_deviation = 0.0;  ///< s of the differences, with n - 1
   double t = 0.0;                   ///< [-]
@@ -39,10 +39,6 @@ struct TTest {
 ///         finite, differences without variance, or a confidence outside.
 TTest paired_t_test(const std::vector<double>& first, const std::vector<double>& second,
                     double confidence = 0.95);
-
-/// Differences values[i] - reference; everything else as paired_t_test().
-TTest one_sample_t_test(const std::vector<double>& values, double reference,
-                        double confidence = 0.95);
 
 /// Test of two independent samples, README Eq. ST-18.
 struct WelchTest {

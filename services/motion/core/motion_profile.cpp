@@ -19,11 +19,4 @@ std::string_view to_string(MotionKind kind) noexcept {
   return index < kWords.size() ? kWords[index] : "unknown";
 }
 
-MotionKind motion_kind_from(const std::string& word) {
-  for (std::size_t i = 0; i < kWords.size(); ++i) {
-    if (kWords[i] == word) return static_cast<MotionKind>(i);
-  }
-  throw ConfigError("motion.kind", word, "still, band_noise, multisine, road or ride");
-}
-
 }  // namespace stillhand::motion

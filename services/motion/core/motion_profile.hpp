@@ -23,8 +23,6 @@ enum class MotionKind : std::uint8_t {
 
 /// "still", "band_noise", "multisine", "road" or "ride".
 std::string_view to_string(MotionKind kind) noexcept;
-/// @throws stillhand::ConfigError for any other word.
-MotionKind motion_kind_from(const std::string& word);
 
 /// What a band may hold, skirts included [Hz].
 inline constexpr double kLowestBand_hz = 0.02;

@@ -320,9 +320,6 @@ inline constexpr double kRaw[] = {
 inline constexpr double kHolm[] = {
     0.084, 1.0999999999999999e-11, 0.2, 0.2, 0.0376, 3.6450000000000005e-05, 1, 1, 0, 0.18, 5.67e-06, 1,
 };
-inline constexpr double kBenjaminiHochberg[] = {
-    0.024, 6e-12, 0.05333333333333333, 0.05333333333333333, 0.01128, 1.215e-05, 0.7963636363636363, 1, 0, 0.05142857142857142, 2.268e-06, 0.6,
-};
 struct SignedRankRow {
   int count; double p; double differences[60];
 };

@@ -180,7 +180,6 @@ table_of("SubjectsRow", "kSubjects", rows)
 p <- c(0.012, 1e-12, 0.04, 0.04, 0.0047, 4.05e-6, 0.73, 1, 0, 0.03, 5.67e-7, 0.5)
 array("kRaw", p)
 array("kHolm", p.adjust(p, "holm"))
-array("kBenjaminiHochberg", p.adjust(p, "BH"))
 
 # Wilcoxon's signed-rank test, one-sided: wilcox.test with zeros left out beforehand.  Exact up to 25 differences
 # without ties, else the normal approximation; `count` differences a row, the rest of the row filled with zeros.

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <iterator>
 
 #include "services/contract/config_error.hpp"
@@ -24,34 +23,20 @@ TEST(MultipleTestingTest, HolmEqualsR) {
   for (std::size_t i = 0; i < sut.size(); ++i) EXPECT_TRUE(agrees(sut[i], golden::kHolm[i])) << i;
 }
 
-TEST(MultipleTestingTest, BenjaminiHochbergEqualsR) {
-  const auto sut = benjamini_hochberg_adjusted(kRaw);
-  ASSERT_EQ(sut.size(), std::size(golden::kBenjaminiHochberg));
-  for (std::size_t i = 0; i < sut.size(); ++i) {
-    EXPECT_TRUE(agrees(sut[i], golden::kBenjaminiHochberg[i])) << i;
-  }
-}
-
 TEST(MultipleTestingTest, FollowsTheDefinitionByHand) {
-  // Holm: 3 * 0.01; 2 * 0.02; the largest so far, since 1 * 0.03 is below it.
+  // 3 * 0.01; 2 * 0.02; the largest so far, since 1 * 0.03 is below it.
   EXPECT_THAT(holm_adjusted({0.03, 0.01, 0.02}),
               ::testing::Pointwise(::testing::DoubleEq(), {0.04, 0.03, 0.04}));
-  // Benjamini-Hochberg: 3/3 * 0.03; the smaller of that and 3/2 * 0.02; of that and 3/1 * 0.01.
-  EXPECT_THAT(benjamini_hochberg_adjusted({0.03, 0.005, 0.02}),
-              ::testing::Pointwise(::testing::DoubleEq(), {0.03, 0.015, 0.03}));
 }
 
 TEST(MultipleTestingTest, OneTestStaysAsItIsAndNoneStaysNone) {
   EXPECT_EQ(holm_adjusted({0.2}), (std::vector<double>{0.2}));
-  EXPECT_EQ(benjamini_hochberg_adjusted({0.2}), (std::vector<double>{0.2}));
   EXPECT_TRUE(holm_adjusted({}).empty());
-  EXPECT_TRUE(benjamini_hochberg_adjusted({}).empty());
 }
 
 TEST(MultipleTestingTest, WhatIsNoProbabilityIsRefused) {
   for (const double outside : {-1e-9, 1.0 + 1e-9, std::nan("")}) {
     EXPECT_THROW(holm_adjusted({0.5, outside}), ConfigError);
-    EXPECT_THROW(benjamini_hochberg_adjusted({0.5, outside}), ConfigError);
   }
 }
 
