@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::cancellation {
 namespace {
@@ -36,12 +36,7 @@ ControlModel full_model() {
 }
 
 std::string refusal(const std::string& text, std::uint32_t rig = 1) {
-  try {
-    parse_control_model(text, "m.json", rig);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "taken";
+  return support::refusal([&] { parse_control_model(text, "m.json", rig); });
 }
 
 std::string changed(const std::function<void(Json&)>& change) {
@@ -142,18 +137,13 @@ TEST(ControlModelFileTest, WhatHasTheWrongShapeIsRefusedByName) {
 TEST(ControlModelFileTest, WhatTheCancellerWouldRefuseIsSaid) {
   const Config settings;
   const auto why = [&](const ControlModel& model) {
-    try {
-      require_sound(model, settings, "m.json");
-    } catch (const ConfigError& error) {
-      return std::string(error.what());
-    }
-    return std::string("sound");
+    return support::refusal([&] { require_sound(model, settings, "m.json"); });
   };
   ControlModel model;
   model.rate_hz = 1000.0;
   model.denominator = {1.0, -1.99, 0.9902};
   model.inputs = {{Channel::kAccelY, {}, {0.0, 2e-4, 0.0}}};
-  EXPECT_EQ(why(model), "sound");
+  EXPECT_EQ(why(model), "accepted");
   ControlModel unstable = model;
   unstable.denominator = {1.0, -2.02, 1.03};
   EXPECT_THAT(why(unstable), AllOf(HasSubstr("m.json"), HasSubstr("unit circle")));

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <string>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::compare {
 namespace {
@@ -26,17 +26,10 @@ class SummaryFileTest : public testing::Test {
     return out;
   }
   static std::string refusal(const std::vector<fs::path>& folders) {
-    try {
-      read_summaries(folders);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "";
+    return support::refusal([&] { read_summaries(folders); });
   }
-  ~SummaryFileTest() override { fs::remove_all(root_); }
 
-  fs::path root_ =
-      fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const support::Folder root_;
 };
 
 TEST_F(SummaryFileTest, ReadsConditionsAndUnknownValues) {

@@ -4,11 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
-#include <string>
 
 #include "services/contract/expects.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand {
 namespace {
@@ -45,12 +44,7 @@ struct StickConfig {
 };
 
 std::string message_of(const StickConfig& config) {
-  try {
-    validate(config, "rig.stick");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal([&] { validate(config, "rig.stick"); });
 }
 
 TEST(ValidateTest, BothEndsOfARangeAreWithinIt) {

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::display {
 namespace {
@@ -27,20 +28,20 @@ std::vector<std::byte> event(unsigned type, unsigned code, std::int32_t value) {
 
 class GamepadTest : public testing::Test {
  protected:
-  GamepadTest() : pipe_(testing::TempDir() + "stillhand_gamepad_" + std::to_string(getpid())) {
+  GamepadTest() {
     mkfifo(pipe_.c_str(), 0600);
     sut_.emplace(pipe_);
     writer_ = open(pipe_.c_str(), O_WRONLY);
   }
   ~GamepadTest() override {
     if (writer_ >= 0) close(writer_);
-    unlink(pipe_.c_str());
   }
   void put(const std::vector<std::byte>& bytes) const {
     ASSERT_EQ(write(writer_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
 
-  std::string pipe_;
+  const support::Folder folder_;
+  const std::string pipe_ = folder_ / "gamepad";
   std::optional<Gamepad> sut_;
   int writer_ = -1;
 };

@@ -12,6 +12,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/display/view_opencv.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::display {
 namespace {
@@ -19,17 +20,8 @@ namespace {
 constexpr int kColumns = 640;
 constexpr int kRows = 480;
 
-/// A folder of its own for each test, removed with it.
 class FrameFileTest : public ::testing::Test {
  protected:
-  FrameFileTest() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("stillhand_") + test->name() + "_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  ~FrameFileTest() override { std::filesystem::remove_all(folder_); }
-
   [[nodiscard]] std::string path(const std::string& name) const {
     return (folder_ / name).string();
   }
@@ -37,7 +29,7 @@ class FrameFileTest : public ::testing::Test {
   TrackingView view_{TrackingDisplay::Config{}, kColumns, kRows};
 
  private:
-  std::filesystem::path folder_;
+  const support::Folder folder_;
 };
 
 TEST_F(FrameFileTest, NumberedImagesHoldTheFramesBitForBit) {

@@ -10,6 +10,7 @@
 #include "apps/experiment/export/bids_texts.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -17,12 +18,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string refusal(const std::string& yaml) {
-  try {
-    design_of(yaml, "experiment.yaml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return support::refusal([&] { design_of(yaml, "experiment.yaml"); });
 }
 
 TEST(ExperimentFileTest, EveryKeyReadsBack) {

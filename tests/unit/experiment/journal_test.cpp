@@ -5,19 +5,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <stdexcept>
+
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::experiment {
 namespace {
 
 // A file size limit plays the full disk: the system then cuts a write short, as a disk does.
 TEST(JournalTest, AShortWriteLeavesWholeLinesAndIsReportedWithItsReason) {
-  const auto file =
-      std::filesystem::temp_directory_path() / ("stillhand-journal-" + std::to_string(getpid()));
-  std::filesystem::remove(file);
+  const support::Folder folder;
+  const auto file = folder / "journal";
   {
     Journal sut(file);
     sut.append({.kind = EntryKind::kSessionBegan, .session = 1});
@@ -27,12 +28,8 @@ TEST(JournalTest, AShortWriteLeavesWholeLinesAndIsReportedWithItsReason) {
     const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
     const rlimit small{whole + 10, before.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
-    std::string why;
-    try {
-      sut.append({.kind = EntryKind::kTrialBegan, .session = 1, .step = 0, .trial = 1});
-    } catch (const std::runtime_error& error) {
-      why = error.what();
-    }
+    const std::string why = support::refusal<std::runtime_error>(
+        [&] { sut.append({.kind = EntryKind::kTrialBegan, .session = 1, .step = 0, .trial = 1}); });
     setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, old_handler);
     EXPECT_THAT(why, testing::HasSubstr("cannot write: File too large"));
@@ -42,7 +39,6 @@ TEST(JournalTest, AShortWriteLeavesWholeLinesAndIsReportedWithItsReason) {
   const Journal again(file);
   ASSERT_EQ(again.entries().size(), 2U);
   EXPECT_EQ(again.entries().back().text, "disk was full");
-  std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -5,14 +5,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "apps/experiment/file/journal.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -118,8 +118,8 @@ TEST_F(ProgressTest, AJournalThatIsCutAtAnyByteGoesOnWhereItsWholeLinesEnd) {
 }
 
 TEST_F(ProgressTest, AFileWithACutLineIsMendedAndContinued) {
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("stillhand-journal-" + std::to_string(getpid()) + ".jsonl");
+  const support::Folder folder;
+  const auto file = folder / "journal.jsonl";
   const std::string first = line_of({.kind = EntryKind::kNote, .time = "t", .text = "one"}) + "\n";
   const std::string second = line_of({.kind = EntryKind::kNote, .time = "t", .text = "two"}) + "\n";
   for (std::size_t cut = 0; cut < second.size(); ++cut) {
@@ -134,18 +134,16 @@ TEST_F(ProgressTest, AFileWithACutLineIsMendedAndContinued) {
     EXPECT_EQ(entries[0].text, "one");
     EXPECT_EQ(entries[1].text, "three");
   }
-  std::filesystem::remove(file);
 }
 
 TEST_F(ProgressTest, AJournalHasOneWriter) {
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("stillhand-journal-" + std::to_string(getpid()) + "-lock.jsonl");
+  const support::Folder folder;
+  const auto file = folder / "journal.jsonl";
   {
     const Journal sut(file);
     EXPECT_THROW(Journal second(file), ConfigError);
   }
   EXPECT_NO_THROW(Journal third(file));
-  std::filesystem::remove(file);
 }
 
 TEST_F(ProgressTest, EveryFieldOfAnEntryReadsBack) {
@@ -218,12 +216,11 @@ TEST_F(ProgressTest, AJournalThatWasChangedByHandIsRefused) {
                                  "{\"time\":\"t\",\"what\":\"note\",\"name\":\"Ann\"}",
                                  "{\"time\":\"t\",\"what\":\"note\",\"step\":1.5}",
                                  "{\"time\":\"t\",\"what\":\"note\",\"step\":1e300}"}) {
-    try {
-      entries_of(line_of(session(1)) + "\n" + line + "\n", "P07/journal.jsonl");
-      ADD_FAILURE() << line;
-    } catch (const ConfigError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("P07/journal.jsonl:2"));
-    }
+    EXPECT_THAT(support::refusal([&] {
+                  entries_of(line_of(session(1)) + "\n" + line + "\n", "P07/journal.jsonl");
+                }),
+                HasSubstr("P07/journal.jsonl:2"))
+        << line;
   }
 }
 

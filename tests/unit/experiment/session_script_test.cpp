@@ -5,14 +5,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
-#include <string>
 #include <vector>
+
+#include "tests/support/folder.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -89,8 +89,6 @@ class SessionScriptTest : public testing::Test {
         {"effort", Question::After::kTrial, "How hard was it?", "not at all", "very", 7},
         {"sick", Question::After::kEnd, "How do you feel?", "well", "sick", 9}};
   }
-  ~SessionScriptTest() override { std::filesystem::remove_all(root_); }
-
   /// A new folder with the orders of a seed.
   void make(std::uint64_t order_seed) {
     const std::filesystem::path path = root_ / std::to_string(++folders_);
@@ -132,8 +130,7 @@ class SessionScriptTest : public testing::Test {
   std::unique_ptr<Folder> folder_;
 
  private:
-  std::filesystem::path root_ =
-      std::filesystem::temp_directory_path() / ("stillhand-script-" + std::to_string(getpid()));
+  const support::Folder root_;
   int folders_ = 0;
 };
 

@@ -10,6 +10,7 @@
 #include "services/contract/config_error.hpp"
 #include "tests/golden/arx/exact_fit.hpp"
 #include "tests/support/feedthrough_records.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::identification {
 namespace {
@@ -109,12 +110,7 @@ TEST(ArxTest, HeldOutErrorIsNotThatOfTheFit) {
 
 TEST(ArxTest, UselessRecordsAreRefusedWithTheReason) {
   const auto refusal = [](const Record& record) {
-    try {
-      fit_arx(record, 4);
-    } catch (const ConfigError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return support::refusal([&] { fit_arx(record, 4); });
   };
   const auto a = white_noise(1000, 1.0, 7);
   const std::vector<double> constant(1000, 2.0);

@@ -4,10 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "services/contract/config_error.hpp"
 #include "tests/support/feedthrough_records.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::identification {
 namespace {
@@ -32,12 +31,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 std::string refusal(const std::string& text) {
-  try {
-    parse_model(text, "m.json");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal([&] { parse_model(text, "m.json"); });
 }
 
 TEST(ModelFileTest, KeepsEveryBit) {

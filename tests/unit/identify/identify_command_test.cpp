@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "services/identification/model_file.hpp"
 #include "services/recording/file_io.hpp"
 #include "tests/support/feedthrough_records.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/verb.hpp"
 
 namespace stillhand::identify {
@@ -25,10 +25,6 @@ using testing::HasSubstr;
 class IdentifyCommandTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     auto slow = support::record_of(support::body_like_model(),
                                    support::band_noise(3000, 50.0, 0.7, 8.0, 1.6, 1));
     std::ofstream csv(folder_ / "ride.csv");
@@ -53,12 +49,9 @@ class IdentifyCommandTest : public testing::Test {
   }
 
   [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }
-  [[nodiscard]] std::size_t file_count() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
+  [[nodiscard]] std::size_t file_count() const { return folder_.entries(); }
 
-  fs::path folder_;
+  const support::Folder folder_;
 };
 
 TEST_F(IdentifyCommandTest, BothFilesAreWrittenAndSayTheSame) {

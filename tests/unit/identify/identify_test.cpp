@@ -14,6 +14,7 @@
 #include "services/rig/core/body.hpp"
 #include "services/rig/core/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/spoiled_recordings.hpp"
 
 namespace stillhand::identify {
@@ -45,12 +46,7 @@ Measurement pegged_body() {
 }
 
 std::string error_of(const Measurement& measurement, const IdentifyOptions& options = {}) {
-  try {
-    (void)identify(measurement, options);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)identify(measurement, options); });
 }
 
 TEST(IdentifyTest, TheBodysResponseIsFoundAndItsNotch) {

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::lab {
@@ -22,13 +23,6 @@ using Path = std::filesystem::path;
 
 class OutputFolderTest : public testing::Test {
  protected:
-  OutputFolderTest()
-      : folder(Path(testing::TempDir()) /
-               testing::UnitTest::GetInstance()->current_test_info()->name()) {
-    std::filesystem::remove_all(folder);
-  }
-  ~OutputFolderTest() override { std::filesystem::remove_all(folder); }
-
   void write(const Path& name) const {
     std::filesystem::create_directories((folder / name).parent_path());
     std::ofstream(folder / name) << "x";
@@ -45,7 +39,8 @@ class OutputFolderTest : public testing::Test {
     return support::refusal([&] { const OutputFolder sut(folder, {ride}); });
   }
 
-  Path folder;
+  const support::Folder around;
+  Path folder = around / "out";
 };
 
 TEST_F(OutputFolderTest, IsMadeAndGoesAgainWithASessionThatNeverWas) {

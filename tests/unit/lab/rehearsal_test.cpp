@@ -8,6 +8,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::lab {
@@ -21,8 +22,7 @@ constexpr double kTrial_s = 10.0;
 
 class RehearsalTest : public testing::Test {
  protected:
-  RehearsalTest() : config(testing::TempDir() + "rehearsal_config") {
-    std::filesystem::create_directories(config);
+  RehearsalTest() {
     write("motion.yaml", "");
     write("display.yaml", "");
     options.conditions = session::parse_conditions("A,B,C");
@@ -38,7 +38,7 @@ class RehearsalTest : public testing::Test {
   [[nodiscard]] std::vector<session::PlannedTrial> trials() const { return session::plan(options); }
 
   session::ProtocolOptions options;
-  std::filesystem::path config;
+  const support::Folder config;
 };
 
 // One sine, which the platform can follow when it is fast and small enough.

@@ -10,9 +10,8 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cstring>
-#include <filesystem>
 
+#include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/wait.hpp"
 
@@ -64,19 +63,18 @@ TEST(KeyPressesTest, AnEventInPiecesIsOneEvent) {
 class StopKeyTest : public testing::Test {
  protected:
   StopKeyTest() {
-    pipe_ = std::filesystem::temp_directory_path() / ("stop_key_" + std::to_string(getpid()));
     mkfifo(pipe_.c_str(), S_IRUSR | S_IWUSR);
     writer_ = open(pipe_.c_str(), O_RDWR | O_CLOEXEC);  // it does not wait for a reader
   }
   ~StopKeyTest() override {
     if (writer_ >= 0) close(writer_);
-    std::filesystem::remove(pipe_);
   }
   void send(const input_event& event) const {
     ASSERT_EQ(write(writer_, &event, sizeof(event)), static_cast<ssize_t>(sizeof(event)));
   }
 
-  std::filesystem::path pipe_;
+  const support::Folder folder_;
+  const std::filesystem::path pipe_ = folder_ / "stop_key";
   int writer_ = -1;
   std::atomic<int> asked_{0};
 };

@@ -11,6 +11,7 @@
 #include "services/rig/core/rig.hpp"
 #include "services/settings/describe.hpp"
 #include "services/settings/load.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -18,7 +19,8 @@ namespace {
 const std::filesystem::path kConfig = std::filesystem::path(STILLHAND_SOURCE) / "deploy/config";
 
 TEST(SubjectSettingsTest, RigAndOperatorAreTheSubjectThatTheStudyDraws) {
-  const std::filesystem::path to = std::filesystem::path(testing::TempDir()) / "subject_settings";
+  const support::Folder folder;
+  const auto to = folder / "subject_settings";
   write_subject_settings(kConfig, to, 7, 3);
   const population::Subject drawn = population::draw_subject({}, 7, 2);
   const auto rig = settings::load<rig::RigConfig>(to / "rig.yaml", "rig");
@@ -34,12 +36,10 @@ TEST(SubjectSettingsTest, RigAndOperatorAreTheSubjectThatTheStudyDraws) {
   }
   EXPECT_EQ(recording::read_file((to / "motion.yaml").string()),
             recording::read_file((kConfig / "motion.yaml").string()));
-  std::filesystem::remove_all(to);
 }
 
 TEST(SubjectSettingsTest, WhatNoPopulationDrawsStaysAndTheFeelIsThatOfTheStick) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "own_settings";
-  std::filesystem::create_directories(folder);
+  const support::Folder folder;
   const auto write = [&](const char* name, const std::string& text) {
     ASSERT_TRUE(recording::write_file_atomically((folder / name).string(), text).ok());
   };
@@ -61,7 +61,6 @@ TEST(SubjectSettingsTest, WhatNoPopulationDrawsStaysAndTheFeelIsThatOfTheStick) 
   EXPECT_NEAR(person.crossover.arm.effective_stiffness_n_m, plain_n_m + 500.0, 1e-6);
   EXPECT_EQ(person.pointer.arm.effective_stiffness_n_m,
             person.crossover.arm.effective_stiffness_n_m);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(SubjectSettingsTest, ASettingsFolderWithoutTheRigIsRefused) {

@@ -5,15 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <string>
-#include <vector>
 
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/mcap_writer.hpp"
 #include "services/recording/core/mcap/memory_bytes.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::motion {
 namespace {
@@ -46,12 +44,7 @@ std::string recording_of(const std::string& name, const std::vector<std::int64_t
 }
 
 std::string error_of(const std::string& path) {
-  try {
-    (void)read_ride(path);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)read_ride(path); });
 }
 
 TEST(RideFileTest, ACsvRideIsItsLateralColumnAtTheFilesRate) {

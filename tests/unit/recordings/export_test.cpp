@@ -202,7 +202,7 @@ TEST_F(ExportTest, AnotherProgramsRecordingIsExportedAsFarAsItsSchemasAreKnown) 
   };
   write(false);
   EXPECT_THAT(
-      config_error_of([&] { export_recording(path("ros.mcap"), {path("out"), {}, {}, {}}); }),
+      support::refusal([&] { export_recording(path("ros.mcap"), {path("out"), {}, {}, {}}); }),
       HasSubstr("schema 1: got a schema in 'ros2idl', want a schema in 'omgidl' or 'ros2msg')"));
   EXPECT_EQ(file_count(), 1u) << "no folder of results that never were";
   write(true);
@@ -231,7 +231,7 @@ TEST_F(ExportTest, ATopicOfTheCatalogueIsReadWithoutItsSchema) {
 TEST_F(ExportTest, PlacesAndNamesThatCannotBeAreRefusedBeforeTheWork) {
   write_sample(path("a.mcap"));
   const auto refused = [&](const ExportOptions& options) {
-    return config_error_of([&] { export_recording(path("a.mcap"), options); });
+    return support::refusal([&] { export_recording(path("a.mcap"), options); });
   };
   EXPECT_THAT(refused({path("out"), path("nowhere/a.mat"), {}, {}}), HasSubstr("--mat"));
   EXPECT_THAT(refused({{}, {}, path("a.mcap"), {}}), HasSubstr("--hdf5"));

@@ -98,7 +98,7 @@ TEST_F(InfoTest, AFileThatGrowsWhileItIsReadIsReadAsItWasAndSaidToGrow) {
 TEST_F(InfoTest, WhatIsNoRecordingIsRefusedInWords) {
   const auto refused = [&](const std::string& bytes) {
     EXPECT_TRUE(recording::write_file_atomically(path("x"), bytes).ok());
-    return config_error_of([&] { OpenRecording recording(path("x")); });
+    return support::refusal([&] { OpenRecording recording(path("x")); });
   };
   EXPECT_THAT(refused(""), HasSubstr("x: got not an MCAP file"));
   EXPECT_THAT(refused("t [s],f [N]\n0,1\n"), HasSubstr("want a recording (MCAP, version 0)"));
@@ -107,9 +107,9 @@ TEST_F(InfoTest, WhatIsNoRecordingIsRefusedInWords) {
   const std::string newer = "\x89MCAP1\r\n";
   EXPECT_THAT(refused(newer + "something new" + newer), HasSubstr("got an MCAP file of version 1"));
   EXPECT_THAT(refused(newer + "something new"), HasSubstr("got an MCAP file of version 1"));
-  EXPECT_THAT(config_error_of([&] { OpenRecording recording(path("nowhere")); }),
+  EXPECT_THAT(support::refusal([&] { OpenRecording recording(path("nowhere")); }),
               HasSubstr("nowhere: got No such file"));
-  EXPECT_THAT(config_error_of([&] { OpenRecording recording(folder_.string()); }),
+  EXPECT_THAT(support::refusal([&] { OpenRecording recording(folder_.path().string()); }),
               HasSubstr("not a regular file"));
 }
 
@@ -166,7 +166,7 @@ TEST_F(InfoTest, AFileThatMayNotBeReadIsRefusedWithTheSystemsReason) {
     std::filesystem::permissions(folder_, std::filesystem::perms::all);
     ASSERT_EQ(seteuid(kNobody), 0);
   }
-  const std::string error = config_error_of([&] { OpenRecording recording(path("a.mcap")); });
+  const std::string error = support::refusal([&] { OpenRecording recording(path("a.mcap")); });
   if (root) {
     ASSERT_EQ(seteuid(0), 0);
   }

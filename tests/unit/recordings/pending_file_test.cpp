@@ -52,7 +52,7 @@ TEST_F(PendingFileTest, PublishNewTakesAFreeNameAlone) {
   EXPECT_EQ(file_count(), 1u);
   PendingFile second(path("a.mcap"));
   write(second.path(), "newer");
-  EXPECT_THAT(config_error_of([&] { second.publish_new(); }), HasSubstr("a.mcap: got "));
+  EXPECT_THAT(support::refusal([&] { second.publish_new(); }), HasSubstr("a.mcap: got "));
   EXPECT_EQ(recording::read_file(path("a.mcap")), "new");
 }
 
@@ -60,7 +60,7 @@ TEST_F(PendingFileTest, ANameThatIsTakenMeanwhileIsNotWrittenOver) {
   PendingFile sut(path("a.mcap"));
   write(sut.path(), "new");
   write(path("a.mcap"), "of somebody else");
-  EXPECT_THAT(config_error_of([&] { sut.publish_new(); }), HasSubstr("a.mcap: got "));
+  EXPECT_THAT(support::refusal([&] { sut.publish_new(); }), HasSubstr("a.mcap: got "));
   EXPECT_EQ(recording::read_file(path("a.mcap")), "of somebody else");
 }
 
@@ -68,7 +68,7 @@ TEST_F(PendingFileTest, ADeviceAFolderAndALinkToOneAreRefused) {
   std::filesystem::create_directories(path("folder"));
   std::filesystem::create_symlink("/dev/null", path("link"));
   for (const std::string& place : {std::string("/dev/null"), path("folder"), path("link")}) {
-    EXPECT_THAT(config_error_of([&] { PendingFile sut(place); }), HasSubstr(place + ": got "));
+    EXPECT_THAT(support::refusal([&] { PendingFile sut(place); }), HasSubstr(place + ": got "));
   }
   EXPECT_EQ(file_count(), 2u);
 }

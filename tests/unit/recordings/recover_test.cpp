@@ -7,7 +7,6 @@
 #include <csignal>
 #include <stdexcept>
 
-#include "apps/recordings/open_recording.hpp"
 #include "tests/support/recorded_file.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
@@ -118,9 +117,9 @@ TEST_F(RecoverTest, NoFileIsWrittenOver) {
   for (const char* name : {"taken", "a.mcap.damaged"}) {
     ASSERT_TRUE(recording::write_file_atomically(path(name), "kept").ok());
   }
-  EXPECT_THAT(config_error_of([&] { recover(path("a.mcap"), {path("taken")}); }),
+  EXPECT_THAT(support::refusal([&] { recover(path("a.mcap"), {path("taken")}); }),
               HasSubstr("taken: got a file that exists, want a name that does not exist"));
-  EXPECT_THAT(config_error_of([&] { recover(path("a.mcap"), {}); }),
+  EXPECT_THAT(support::refusal([&] { recover(path("a.mcap"), {}); }),
               HasSubstr("a.mcap.damaged: got a file that exists"));
   EXPECT_EQ(recording::read_file(path("a.mcap")), before);
   EXPECT_EQ(recording::read_file(path("taken")), "kept");
@@ -133,7 +132,7 @@ TEST_F(RecoverTest, AFileThatIsStillBeingWrittenIsRefused) {
   const auto channel = writer.add_channel("p", 0, "cdr");
   ASSERT_TRUE(writer.write(channel, 0, 1, 1, std::vector<std::byte>(9)).ok());
   ASSERT_TRUE(writer.flush_chunk().ok());
-  EXPECT_THAT(config_error_of([&] { recover(path("a.mcap"), {}); }),
+  EXPECT_THAT(support::refusal([&] { recover(path("a.mcap"), {}); }),
               HasSubstr("a.mcap: got a file that is still being written, want one whose recorder"));
   EXPECT_EQ(file_count(), 1u);
 }

@@ -52,7 +52,7 @@ TEST_F(Ros2BagTest, ARecordingOfSomethingElseIsRefusedAndNoFileIsLeft) {
   write_sample(path("a.mcap"));
   write_ros2_bag(path("a.mcap"), path("bag.mcap"));
   const std::size_t files = file_count();
-  EXPECT_THAT(config_error_of([&] { write_ros2_bag(path("bag.mcap"), path("again.mcap")); }),
+  EXPECT_THAT(support::refusal([&] { write_ros2_bag(path("bag.mcap"), path("again.mcap")); }),
               HasSubstr("no topic that a bag of ROS 2 would hold"));
   EXPECT_EQ(file_count(), files);
 }

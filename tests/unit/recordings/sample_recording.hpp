@@ -4,15 +4,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <string>
 
 #include "idl/control_loop.h"
 #include "idl/idl_text.hpp"
 #include "idl/session.h"
-#include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/mcap_writer.hpp"
 #include "services/recording/file_io.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/session_file.hpp"
 
 namespace stillhand::recordings {
@@ -20,26 +20,10 @@ namespace stillhand::recordings {
 /// Tests with a folder of their own, gone afterwards.
 class FolderTest : public testing::Test {
  protected:
-  FolderTest() { std::filesystem::create_directories(folder_); }
-  ~FolderTest() override { std::filesystem::remove_all(folder_); }
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-  [[nodiscard]] std::size_t file_count() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_),
-                                                  std::filesystem::directory_iterator{}));
-  }
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
-                                        ("stillhand-recorder-" + std::to_string(getpid()));
+  [[nodiscard]] std::size_t file_count() const { return folder_.entries(); }
+  const support::Folder folder_;
 };
-
-template <typename Action>
-std::string config_error_of(Action action) {
-  try {
-    action();
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 inline constexpr std::uint64_t kSampleStart_ns = 1'795'272'703'845'833'285;
 inline constexpr std::int64_t kSampleMessages = 200;

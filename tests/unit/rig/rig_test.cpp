@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/rig/core/rig.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,6 +9,8 @@
 #include <limits>
 #include <numbers>
 #include <random>
+
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::rig {
 namespace {
@@ -271,12 +274,8 @@ TEST(RigTest, AFlutteringPegDoesNotPumpTheBody) {
 TEST(RigTest, NamesTheFieldThatIsOutOfRange) {
   RigConfig config;
   config.body.grip_stiffness_n_m = kNaN;
-  try {
-    Rig sut(config);
-    FAIL() << "a NaN was accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("rig.body.grip_stiffness_n_m"), std::string::npos);
-  }
+  EXPECT_THAT(support::refusal([&] { Rig sut(config); }),
+              testing::HasSubstr("rig.body.grip_stiffness_n_m"));
 }
 
 }  // namespace

@@ -2,32 +2,23 @@
 #include "services/rig/sealed_file.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::rig {
 namespace {
 
 class SealedFileTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder =
-        std::filesystem::temp_directory_path() / ("stillhand-sealed-" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
   [[nodiscard]] std::string content(const char* name) const {
-    std::ifstream file(folder / name);
-    return {std::istreambuf_iterator<char>(file), {}};
+    return support::text_of(folder / name);
   }
 
-  std::filesystem::path folder;
+  const support::Folder folder;
   const std::string nonce = "00112233445566778899aabbccddeeff";
   const OpenedEffect effect{41, "tone", "", "hand", {{"amplitude", "N", 1.5}}};
 };

@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/refusal.hpp"
+
 namespace stillhand::runtime {
 namespace {
 
@@ -37,12 +39,7 @@ TEST(RunJobsTest, TheExceptionOfTheLowestIndexIsThrownAndNoFurtherJobStarts) {
     ++ran;
     if (i >= 3) throw std::runtime_error("job " + std::to_string(i));
   };
-  try {
-    run_jobs(1000, 2, job);
-    FAIL() << "nothing was thrown";
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "job 3");
-  }
+  EXPECT_EQ(support::refusal<std::runtime_error>([&] { run_jobs(1000, 2, job); }), "job 3");
   EXPECT_LE(ran, 5);  // 0 to 3, and one that the other thread had begun
 }
 

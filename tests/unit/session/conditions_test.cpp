@@ -12,6 +12,7 @@
 #include "services/admittance/core/arm_fit.hpp"
 #include "services/cancellation/parts/recipe.hpp"
 #include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::session {
 namespace {
@@ -23,12 +24,7 @@ std::vector<PlannedTrial> planned(const std::string& conditions) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    parse_conditions(text);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { parse_conditions(text); });
 }
 
 TEST(ConditionsTest, NamesStandNextToLetters) {

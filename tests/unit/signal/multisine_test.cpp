@@ -9,9 +9,9 @@
 #include <cstring>
 #include <numbers>
 #include <string>
-#include <vector>
 
 #include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::signal {
 namespace {
@@ -24,12 +24,7 @@ Multisine three_tones() {
 }
 
 std::string message_of(std::vector<Component> components) {
-  try {
-    Multisine(kPeriod, kRateHz, std::move(components));
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal([&] { Multisine(kPeriod, kRateHz, std::move(components)); });
 }
 
 // Oracle: central difference of v.  Error <= (w_max dt)^2 / 6 * sum A with w_max = 2 pi 4 Hz:

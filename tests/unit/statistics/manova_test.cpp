@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <cmath>
 #include <limits>
 #include <string>
 
-#include "services/contract/config_error.hpp"
 #include "tests/golden/statistics/exact_lambda.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/statistics_golden.hpp"
 
 namespace stillhand::statistics {
@@ -126,12 +125,7 @@ TEST(ManovaTest, UnitsAndMixturesOfMetricsDoNotMatter) {
 }
 
 std::string message_of(const MatrixXd& observations, const ManovaLayout& layout) {
-  try {
-    two_way_manova(observations, layout);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal([&] { two_way_manova(observations, layout); });
 }
 
 TEST(ManovaTest, TooFewDegreesOfFreedomAreNamed) {

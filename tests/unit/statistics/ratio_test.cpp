@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <vector>
 
 #include "services/contract/config_error.hpp"
 #include "services/statistics/descriptive.hpp"
