@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,6 +15,8 @@
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
 #include "services/recording/core/csv.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/verb.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
@@ -29,21 +30,16 @@ using testing::HasSubstr;
 class PredictCommandTest : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     diagnosis::Model model = made::model_of({{{2.0}}, {1.0}, 0.5});
     write("model.json", diagnosis::model_json(model));
     write("ride.csv", csv_at(100.0));
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void write(const char* name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
   [[nodiscard]] std::string text_of(const char* name) const {
-    std::ostringstream text;
-    text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
-    return text.str();
+    return support::text_of(folder_ / name);
   }
   [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
 
@@ -63,9 +59,7 @@ class PredictCommandTest : public testing::Test {
     return support::output_of(add_predict_command, support::named("predict", words));
   }
 
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      (std::string("predict_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const support::Folder folder_;
 };
 
 TEST_F(PredictCommandTest, WritesAsManyRowsAsItSays) {
@@ -94,7 +88,7 @@ TEST_F(PredictCommandTest, ARefusedRecordingLeavesTheEarlierFileAsItWas) {
   write("ride.csv", csv_at(150.0));
   EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", path("out.csv")}), ConfigError);
   EXPECT_EQ(text_of("out.csv"), "earlier");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 3);
+  EXPECT_EQ(folder_.entries(), 3u);
 }
 
 TEST_F(PredictCommandTest, TheOutputMayNotBeOneOfTheInputs) {
@@ -106,13 +100,9 @@ TEST_F(PredictCommandTest, TheOutputMayNotBeOneOfTheInputs) {
 }
 
 TEST_F(PredictCommandTest, AFileThatIsMissingOrNoModelIsNamed) {
-  const auto message_of = [&](const char* model, const char* ride) -> std::string {
-    try {
-      run({path(model), path(ride), "--out", path("out.csv")});
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "accepted";
+  const auto message_of = [&](const char* model, const char* ride) {
+    return support::refusal<std::exception>(
+        [&] { run({path(model), path(ride), "--out", path("out.csv")}); });
   };
   EXPECT_THAT(message_of("absent.json", "ride.csv"), HasSubstr("absent.json"));
   EXPECT_THAT(message_of("model.json", "absent.csv"), HasSubstr("absent.csv"));

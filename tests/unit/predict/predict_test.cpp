@@ -5,13 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <string>
-#include <vector>
 
-#include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::predict {
@@ -42,15 +39,6 @@ const std::vector<double>& values_of(const Prediction& prediction) {
 Model static_model(double gain, double offset = 0.0) {
   Model model = made::model_of({{{gain}}, {1.0}, offset});
   return model;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 std::vector<double> ramp(std::size_t count) {
@@ -168,30 +156,30 @@ TEST(PredictTest, AModelFromItsFileAnswersBitForBit) {
 TEST(PredictTest, AMissingInputIsNamed) {
   Model model = made::model_of(made::two_pole_body());
   model.inputs = {"elbow"};
-  EXPECT_THAT(
-      message_of([&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 8)}})); }),
-      HasSubstr("elbow"));
+  EXPECT_THAT(support::refusal(
+                  [&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 8)}})); }),
+              HasSubstr("elbow"));
 }
 
 TEST(PredictTest, AMissingChannelOfAnEffectIsNamed) {
   const Model model =
       made::model_of(made::two_pole_body(), {{"coupled_input", "static", {"grip"}, {}, {1.0}}});
-  EXPECT_THAT(
-      message_of([&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 9)}})); }),
-      HasSubstr("grip"));
+  EXPECT_THAT(support::refusal(
+                  [&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 9)}})); }),
+              HasSubstr("grip"));
 }
 
 TEST(PredictTest, AnEffectWithoutItsNumbersIsRefused) {
   const Model model =
       made::model_of(made::two_pole_body(), {{"delay", "of the input", {}, {}, {}}});
-  EXPECT_THAT(
-      message_of([&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 9)}})); }),
-      StartsWith("model: got "));
+  EXPECT_THAT(support::refusal(
+                  [&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 9)}})); }),
+              StartsWith("model: got "));
 }
 
 TEST(PredictTest, ARateThatIsNoMultipleOfTheModelsIsRefusedWithBoth) {
   for (const double rate_hz : {50.0, 99.0, 150.0, 1005.0}) {
-    const std::string message = message_of([&] {
+    const std::string message = support::refusal([&] {
       predict(static_model(1.0), made::measurement_of({{"u", "V", ramp(3000)}}, rate_hz));
     });
     EXPECT_THAT(message, AllOf(StartsWith("made: got "), HasSubstr("100 Hz"))) << rate_hz;
@@ -202,7 +190,7 @@ TEST(PredictTest, InputsOnWhichTheModelRunsAwayAreRefused) {
   Body body;
   body.denominator = {1.0, -1.5};
   body.numerators = {{1.0, 0.0}};
-  EXPECT_THAT(message_of([&] {
+  EXPECT_THAT(support::refusal([&] {
                 predict(made::model_of(body), made::measurement_of({{"u", "V", ramp(2000)}}));
               }),
               StartsWith("made: got "));
@@ -279,8 +267,9 @@ TEST(PredictTest, AStretchShorterThanASampleOfTheModelHasNoRowsAndTheNextOneKeep
 }
 
 TEST(PredictTest, ARecordingOfShortStretchesAloneIsRefused) {
-  EXPECT_THAT(message_of([] { predict(static_model(1.0), in_stretches({9, 4, 7}, ramp(20))); }),
-              AllOf(StartsWith("made: got "), HasSubstr("10 samples")));
+  EXPECT_THAT(
+      support::refusal([] { predict(static_model(1.0), in_stretches({9, 4, 7}, ramp(20))); }),
+      AllOf(StartsWith("made: got "), HasSubstr("10 samples")));
 }
 
 }  // namespace

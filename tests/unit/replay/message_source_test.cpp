@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <random>
 
 #include "services/recording/core/mcap/mcap_writer.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::replay {
 namespace {
@@ -26,9 +26,6 @@ struct Note {
 
 class MessageSourceTest : public testing::Test {
  protected:
-  MessageSourceTest() { std::filesystem::create_directories(folder_); }
-  ~MessageSourceTest() override { std::filesystem::remove_all(folder_); }
-
   /// A file of two channels, 0 and 1, with these messages in this order.
   std::string file_of(const std::vector<Note>& notes) const {
     const std::string path = (folder_ / "f.mcap").string();
@@ -58,8 +55,7 @@ class MessageSourceTest : public testing::Test {
     return notes;
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("stillhand-source-" + std::to_string(getpid()));
+  const support::Folder folder_;
 };
 
 TEST_F(MessageSourceTest, ComesInTheOrderOfTimeWhateverTheOrderOfTheFile) {

@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <numeric>
 
 #include "services/recording/core/mcap/mcap_writer.hpp"
 #include "services/runtime/process/clock.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/wait.hpp"
 
 namespace stillhand::replay {
@@ -33,7 +33,6 @@ constexpr std::int64_t kEnd = kStart + (kCount - 1) * kMs;
 class PlayerTest : public testing::Test {
  protected:
   PlayerTest() {
-    std::filesystem::create_directories(folder_);
     recording::FileSink sink(path(), recording::Existing::kReplace);
     recording::McapWriter writer(sink, {});
     writer.add_channel("a", 0, "cdr");
@@ -44,12 +43,6 @@ class PlayerTest : public testing::Test {
     }
     EXPECT_TRUE(writer.close().ok());
     file_ = std::make_unique<recording::FileSource>(path());
-  }
-  ~PlayerTest() override {
-    sut_.reset();
-    source_.reset();
-    file_.reset();
-    std::filesystem::remove_all(folder_);
   }
   [[nodiscard]] std::string path() const { return (folder_ / "f.mcap").string(); }
 
@@ -84,8 +77,7 @@ class PlayerTest : public testing::Test {
     return list;
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("stillhand-player-" + std::to_string(getpid()));
+  const support::Folder folder_;
   std::unique_ptr<recording::FileSource> file_;
   std::unique_ptr<MessageSource> source_;
   std::unique_ptr<Player> sut_;

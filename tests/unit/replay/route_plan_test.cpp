@@ -7,11 +7,11 @@
 
 #include "idl/idl_text.hpp"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/mcap_writer.hpp"
 #include "services/recording/core/mcap/memory_bytes.hpp"
 #include "services/recording/qos_texts.hpp"
 #include "tests/support/own_domain.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::replay {
 namespace {
@@ -50,20 +50,10 @@ class RoutePlanTest : public testing::Test {
     return plan_routes(options_, reader(), playback);
   }
   std::string refusal_of_plan() {
-    try {
-      plan();
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "planned";
+    return support::refusal([&] { plan(); });
   }
   std::string refusal_of_names() {
-    try {
-      check_names(options_, reader());
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "taken";
+    return support::refusal([&] { check_names(options_, reader()); });
   }
 
   recording::MemorySink sink_;
@@ -90,7 +80,7 @@ TEST_F(RoutePlanTest, ARemapOfATopicThatIsBlockedIsRefused) {
 TEST_F(RoutePlanTest, ARemapOfATopicThatIsPlayedIsTaken) {
   channel("stillhand/sensed", "stillhand_msgs::Sensed");
   options_.remap = {{"stillhand/sensed", "x"}};
-  EXPECT_EQ(refusal_of_names(), "taken");
+  EXPECT_EQ(refusal_of_names(), "accepted");
 }
 
 TEST_F(RoutePlanTest, EachWantedChannelHasAWriterUnderItsOwnOrItsNewName) {
