@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::dashboard {
 namespace {
@@ -124,9 +125,9 @@ class TokenFileTest : public ::testing::Test {
     std::ofstream(file_) << text;
     chmod(file_.c_str(), mode);
   }
-  void TearDown() override { std::filesystem::remove(file_); }
 
-  std::string file_ = testing::TempDir() + "stillhand_token_" + std::to_string(getpid());
+  const support::Folder folder_;
+  const std::string file_ = folder_ / "token";
 };
 
 TEST_F(TokenFileTest, ATokenIsOneLine) {

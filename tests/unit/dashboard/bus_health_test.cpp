@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/refusal.hpp"
+
 namespace stillhand::dashboard {
 namespace {
 
@@ -144,14 +146,9 @@ TEST_F(BusHealthTest, TimesThatCannotBeRaiseNothing) {
 TEST(BusHealthConfigTest, AWarningAboveItsCriticalValueIsRefused) {
   Config config;
   config.silent_warning_ms = 400.0;
-  try {
-    BusHealth(config, {}, {});
-    FAIL();
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(),
-                testing::StrEq("dashboard.silent_warning_ms: got 400, want at most 300, the "
-                               "critical value"));
-  }
+  EXPECT_THAT(support::refusal([&] { BusHealth(config, {}, {}); }),
+              testing::StrEq("dashboard.silent_warning_ms: got 400, want at most 300, the "
+                             "critical value"));
 }
 
 }  // namespace

@@ -7,13 +7,12 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/write.hpp>
-#include <chrono>
 #include <deque>
-#include <filesystem>
 #include <fstream>
 #include <optional>
-#include <string>
 #include <vector>
+
+#include "tests/support/folder.hpp"
 
 namespace stillhand::dashboard {
 namespace {
@@ -39,13 +38,7 @@ class HttpServerTest : public ::testing::Test {
                                                                    return Outcome{};
                                                                  }});
   }
-  ~HttpServerTest() override { std::filesystem::remove_all(folder_); }
 
-  static std::filesystem::path made(std::string path) {
-    path += std::to_string(getpid());
-    std::filesystem::create_directories(path);
-    return path;
-  }
   tcp::socket& client() {
     clients_.emplace_back(io_, tcp::v4());
     clients_.back().set_option(boost::asio::socket_base::receive_buffer_size(4096));
@@ -98,7 +91,7 @@ class HttpServerTest : public ::testing::Test {
     ASSERT_TRUE(until(all_block));
   }
 
-  std::filesystem::path folder_ = made(testing::TempDir() + "stillhand_http_");
+  const support::Folder folder_;
   std::optional<Pages> pages_;
   Access access_{kToken};
   int stops_ = 0;

@@ -14,6 +14,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/mcap_writer.hpp"
 #include "services/recording/file_io.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/session_file.hpp"
 
 namespace stillhand::dashboard {
@@ -81,11 +82,6 @@ std::vector<Recorded> session() {
 
 class RecordedRunTest : public ::testing::Test {
  protected:
-  ~RecordedRunTest() override {
-    std::filesystem::remove(file_);
-    std::filesystem::remove(cut_file_);
-  }
-
   void record(const std::vector<Recorded>& messages) { record(messages, file_); }
   void record(const std::vector<Recorded>& messages, const std::string& file) {
     recording::FileSink sink(file);
@@ -109,7 +105,8 @@ class RecordedRunTest : public ::testing::Test {
     return nlohmann::json::parse(snapshot_json(feed, {}, now_ns, -1));
   }
 
-  std::string file_ = testing::TempDir() + "stillhand_run_" + std::to_string(getpid()) + ".mcap";
+  const support::Folder folder_;
+  std::string file_ = folder_ / "run.mcap";
   std::string cut_file_ = file_ + ".cut";
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +12,7 @@
 
 #include "apps/dashboard/server/routes.hpp"
 #include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
 
 // Requests that are right, spoilt by a seeded generator: each has an answer that this page may
 // give, none without the token, and no file but the page's own is in any.
@@ -96,12 +96,6 @@ Spoilt request(Random& random, const Access& cookies) {
   return all;
 }
 
-std::filesystem::path made(std::string path) {
-  path += std::to_string(getpid());
-  std::filesystem::create_directories(path);
-  return path;
-}
-
 class RequestFuzzTest : public ::testing::Test {
  protected:
   RequestFuzzTest() {
@@ -114,7 +108,6 @@ class RequestFuzzTest : public ::testing::Test {
     std::ofstream(folder_ / "secret") << "secret";
     std::ofstream(page / "secret") << "secret";
   }
-  ~RequestFuzzTest() override { std::filesystem::remove_all(folder_); }
 
   /// @returns its status
   unsigned ask(const Spoilt& all, const Access& access) {
@@ -138,7 +131,7 @@ class RequestFuzzTest : public ::testing::Test {
     return got.status;
   }
 
-  std::filesystem::path folder_ = made(testing::TempDir() + "stillhand_fuzz_");
+  const support::Folder folder_;
   std::optional<Pages> pages_;
   int acted_ = 0;
   Served served_{[](std::optional<double> /*at_s*/) { return std::string("{}"); },

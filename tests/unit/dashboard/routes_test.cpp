@@ -8,6 +8,7 @@
 #include <random>
 
 #include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::dashboard {
 namespace {
@@ -24,18 +25,12 @@ class RoutesTest : public ::testing::Test {
     std::ofstream(folder_ / "secret") << "secret";
     pages_.emplace(folder_);
   }
-  ~RoutesTest() override { std::filesystem::remove_all(folder_); }
 
-  static std::filesystem::path made(std::string path) {
-    path += std::to_string(getpid());
-    std::filesystem::create_directories(path);
-    return path;
-  }
   Answer ask(std::string_view method, std::string_view target, std::string_view origin = "") {
     return answer({method, target, "127.0.0.1", origin, "", ""}, *pages_, loopback_, served_);
   }
 
-  std::filesystem::path folder_ = made(testing::TempDir() + "stillhand_pages_");
+  const support::Folder folder_;
   std::optional<Pages> pages_;
   Outcome act(std::string_view path, const std::string& text) {
     text_ = text;
