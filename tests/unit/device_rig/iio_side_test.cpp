@@ -8,9 +8,9 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <fstream>
-#include <string>
+
+#include "tests/support/folder.hpp"
 
 namespace stillhand::emulators {
 namespace {
@@ -29,17 +29,14 @@ class IioSideTest : public testing::Test {
     }
     reader_ = open((folder_ / "dev/iio:device0").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   }
-  ~IioSideTest() override {
-    close(reader_);
-    fs::remove_all(folder_);
-  }
+  ~IioSideTest() override { close(reader_); }
   int samples_read() {
     std::array<std::int32_t, 100> samples{};
     return static_cast<int>(std::max<ssize_t>(0, read(reader_, samples.data(), sizeof(samples)))) /
            static_cast<int>(sizeof(std::int32_t));
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("stillhand-iio-" + std::to_string(getpid()));
+  const support::Folder folder_;
   int reader_ = -1;
 };
 

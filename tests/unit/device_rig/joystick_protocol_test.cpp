@@ -6,13 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <optional>
-#include <string>
-
-#include "services/contract/config_error.hpp"
 #include "services/device_rig/core/joystick_record.hpp"
 #include "services/device_rig/joystick_port.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -92,13 +88,8 @@ TEST(ForceLatchTest, AForceThatRanOutStaysAwayUntilAStop) {
 }
 
 TEST(JoystickPortTest, WhatIsNoJoystickIsRefused) {
-  const auto refusal = [](const char* path) -> std::string {
-    try {
-      const JoystickPort sut(path);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "";
+  const auto refusal = [](const char* path) {
+    return support::refusal([&] { const JoystickPort sut(path); });
   };
   EXPECT_THAT(refusal("/dev/null"), testing::HasSubstr("no joystick that plays constant forces"));
   EXPECT_THAT(refusal("/nowhere"), testing::HasSubstr("No such file"));

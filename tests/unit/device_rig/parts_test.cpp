@@ -3,25 +3,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
-#include <string>
 
-#include "services/contract/config_error.hpp"
 #include "services/device_rig/load_devices.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::device_rig {
 namespace {
 
 std::string refusal(const DevicesConfig& config) {
-  try {
-    parts_of(config);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return support::refusal([&] { parts_of(config); });
 }
 
 TEST(PartsTest, TheDefaultsNeedNoDevice) {
@@ -73,7 +66,7 @@ TEST(PartsTest, AMountIsARotationAndHasNoSign) {
   DevicesConfig config;
   config.signals.acceleration = "iio";
   config.accelerometer.mount = "0 1 0, -1 0 0, 0 0 1";
-  EXPECT_EQ(refusal(config), "");
+  EXPECT_EQ(refusal(config), "accepted");
   config.accelerometer.sign = -1;
   EXPECT_THAT(refusal(config),
               testing::HasSubstr("devices.accelerometer.sign: got -1 with a mount"));
@@ -85,7 +78,7 @@ TEST(PartsTest, AnOdriveServesAngleAndMotorAndNoInput) {
   DevicesConfig config;
   config.drive.kind = "odrive";
   config.signals.angle = config.signals.motor = "drive";
-  EXPECT_EQ(refusal(config), "");
+  EXPECT_EQ(refusal(config), "accepted");
   config.signals.force = "drive";
   EXPECT_THAT(
       refusal(config),
@@ -139,16 +132,11 @@ TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
 }
 
 TEST(LoadDevicesTest, AWordThatIsNoPartIsRefusedWithFileKeyAndTheWordsThatThereAre) {
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("stillhand-devices-" + std::to_string(getpid()) + ".yaml");
-  const auto refused = [&](const std::string& text) -> std::string {
+  const support::Folder folder;
+  const auto file = folder / "devices.yaml";
+  const auto refused = [&](const std::string& text) {
     std::ofstream(file) << text;
-    try {
-      load_devices(file);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "";
+    return support::refusal([&] { load_devices(file); });
   };
   EXPECT_EQ(
       refused("signals: {force: spring}\n"),
@@ -159,8 +147,7 @@ TEST(LoadDevicesTest, AWordThatIsNoPartIsRefusedWithFileKeyAndTheWordsThatThereA
                 ":1:18: devices.signals.force: got a list, want text of 1 to 20 characters: force "
                 "of the hand on the stick: simulated, drive (an analogue input of it), iio or "
                 "indicator");
-  EXPECT_EQ(refused("signals: {force: indicator}\n"), "");
-  std::filesystem::remove(file);
+  EXPECT_EQ(refused("signals: {force: indicator}\n"), "accepted");
 }
 
 }  // namespace

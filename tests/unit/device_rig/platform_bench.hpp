@@ -7,7 +7,6 @@
 #include <deque>
 #include <limits>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "services/device_rig/core/platform_exchange.hpp"
@@ -68,7 +67,6 @@ class PlatformBench {
   [[nodiscard]] const PlatformDrive& drive() const { return drive_; }
   [[nodiscard]] bool lost(const Trial& trial) const { return permission_.latched(trial); }
   [[nodiscard]] bool moves() const { return std::abs(speed_m_s_) > 0.002; }
-  [[nodiscard]] double asked_m() const { return last_ ? last_->position_m : place_m_; }
 
  private:
   static constexpr std::uint32_t kToken = 7, kValid_ms = 20;

@@ -5,13 +5,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <optional>
 
 #include "idl/topics.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
 #include "services/recording/sample_clock.hpp"
 #include "services/recording/trial_log.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/session_file.hpp"
 
 namespace stillhand::recording {
@@ -60,16 +60,11 @@ TEST(SampleHeadTest, OtherBytesHaveNoTick) {
 class TallyTest : public testing::Test {
  protected:
   TallyTest() {
-    std::filesystem::create_directories(folder_);
     TapeOptions options;
     options.path = (folder_ / "t.mcap").string();
     options.min_free_bytes = 0;
     tape_.emplace(std::move(options));
     sut_.emplace(&*tape_);
-  }
-  ~TallyTest() override {
-    tape_.reset();
-    std::filesystem::remove_all(folder_);
   }
   void take(const FoundWriter& writer, std::size_t number, std::int64_t sequence,
             std::span<const std::byte> bytes) {
@@ -77,8 +72,7 @@ class TallyTest : public testing::Test {
     sut_->take(writer, {number, sequence, at_ns, at_ns, at_ns, bytes});
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("stillhand-tally-" + std::to_string(getpid()));
+  const support::Folder folder_;
   std::optional<Tape> tape_;
   std::optional<Tally> sut_;
   std::int64_t time_ns_ = 0;

@@ -12,8 +12,8 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
 #include "services/recording/qos_texts.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/wait.hpp"
 
 namespace stillhand::recording {
@@ -23,9 +23,6 @@ using support::eventually;
 
 class TapeTest : public testing::Test {
  protected:
-  TapeTest() { std::filesystem::create_directories(folder_); }
-  ~TapeTest() override { std::filesystem::remove_all(folder_); }
-
   TapeOptions options() const {
     TapeOptions options;
     options.path = (folder_ / "t.mcap").string();
@@ -63,8 +60,7 @@ class TapeTest : public testing::Test {
     return found;
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("stillhand-tape-" + std::to_string(getpid()));
+  const support::Folder folder_;
 };
 
 TEST_F(TapeTest, FurtherMetadataStandsAtTheBeginningOfEveryFile) {
@@ -75,7 +71,7 @@ TEST_F(TapeTest, FurtherMetadataStandsAtTheBeginningOfEveryFile) {
   put(sut, channel(sut), 0, 250);
   ASSERT_TRUE(sut.close().ok());
   ASSERT_GE(sut.status().parts, 2u);
-  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
     FileSource file(entry.path().string());
     McapReader reader(file);
     ASSERT_NE(reader.find_metadata("stillhand.experiment"), nullptr) << entry.path();
@@ -271,7 +267,7 @@ TEST_F(TapeTest, AFileThatCannotBeWrittenIsNotLeftBehind) {
   EXPECT_THROW(Tape{options()}, std::runtime_error);
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old), 0);
   std::signal(SIGXFSZ, disposition);
-  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
 TEST(QosTextsTest, EveryPolicyComesBackFromItsText) {
