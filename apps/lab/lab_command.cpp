@@ -25,7 +25,7 @@ namespace stillhand::lab {
 namespace {
 
 // Options whose texts are not the values of LabOptions.
-struct Arguments {
+struct LabArguments {
   std::string conditions = "A,B,C";
   std::string who = "simulated";
   std::string motion = "noise";
@@ -42,7 +42,7 @@ struct Arguments {
 };
 
 // The options of the perturbed trial have no effect without --identify: they are refused.
-void take_perturbation(const Arguments& arguments, LabOptions& options) {
+void take_perturbation(const LabArguments& arguments, LabOptions& options) {
   if (arguments.identify.empty()) {
     const char* const given = arguments.perturb_period_s ? "--perturb-period-s"
                               : arguments.task           ? "--task"
@@ -60,7 +60,7 @@ void take_perturbation(const Arguments& arguments, LabOptions& options) {
 }
 
 // An option of the road has no effect without --motion road: it is refused.
-void take_road(const Arguments& arguments, session::ProtocolOptions& protocol) {
+void take_road(const LabArguments& arguments, session::ProtocolOptions& protocol) {
   if (protocol.motion != session::Motion::kRoad &&
       (arguments.road_class || arguments.road_speed_m_s)) {
     throw ConfigError(arguments.road_class ? "--road-class" : "--speed-m-s",
@@ -101,7 +101,7 @@ void take_rig(const std::vector<std::string>& arguments, LabOptions& options) {
 }
 
 // The trials and the person or model that tracks.
-void add_trial_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
+void add_trial_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
   lab.add_option("--conditions", arguments.conditions,
                  "comma-separated: " + session::known_conditions(session::kLabConditions))
       ->capture_default_str();
@@ -149,7 +149,7 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Arguments& arguments)
                "each trial waits until a person presses Start on the dashboard");
 }
 
-void add_motion_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
+void add_motion_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
   lab.add_option("--motion", arguments.motion,
                  "platform motion in B and C: noise (the paper's), road (ISO 8608), or ride")
       ->check(CLI::IsMember({"noise", "road", "ride"}))
@@ -194,7 +194,7 @@ void add_output_options(CLI::App& lab, LabOptions& options) {
 }
 
 // The machines, the bus and the services.
-void add_bus_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
+void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
   CLI::Option* domain = lab.add_option("--domain", options.domain, "DDS domain, 0 to 232");
   domain->capture_default_str();
   CLI::Option* inventory = lab.add_option(
@@ -229,7 +229,7 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Arguments& arguments) {
   lab.add_flag("--no-real-time", arguments.ordinary, "do not ask for real-time priority");
 }
 
-void take_arguments(const Arguments& arguments, LabOptions& options) {
+void take_arguments(const LabArguments& arguments, LabOptions& options) {
   options.protocol.conditions = session::parse_conditions(arguments.conditions);
   const bool scheduled =
       std::ranges::find(options.protocol.conditions, session::Condition::kScheduled) !=
@@ -274,7 +274,7 @@ void group_options(CLI::App& lab) {
 
 void add_lab_command(CLI::App& cli, int& status) {
   auto options = std::make_shared<LabOptions>();
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<LabArguments>();
   set_places(*options);
   CLI::App* lab = cli.add_subcommand(
       "lab",
