@@ -33,7 +33,7 @@ std::vector<Place> equal_runs(const std::vector<double>& values);
 /// More than 16 values: fewer are a state or a switch, which no range and no noise describes.
 bool has_many_levels(const std::vector<double>& values);
 
-/// The tests of one column of many levels, README ME-5 to ME-10.  Pure; linear in the rows.
+/// The tests of one column of many levels, README ME-7 to ME-12.  Pure; linear in the rows.
 /// @param values  at least 200
 std::vector<BadRows> far_values(const std::vector<double>& values);
 /// @param quiet  asked of a place and its two neighbours: does no other channel jump there?
@@ -49,7 +49,7 @@ std::optional<BadRows> clipped_in(const std::vector<double>& values,
 double held_rows(const std::vector<double>& values, const std::vector<Place>& runs, double rate_hz);
 bool counts_rows(const std::vector<double>& values);
 
-/// Eq. ME-6: how far a row lies from the cubic through its four neighbours, and how far the rows of
+/// Eq. ME-8: how far a row lies from the cubic through its four neighbours, and how far the rows of
 /// the channel usually do.
 double off_neighbours(const std::vector<double>& values, std::size_t row);
 /// 1.48 times the median of the above, which is one standard deviation of a normal one; 0 where

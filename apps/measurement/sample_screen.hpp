@@ -15,7 +15,7 @@ struct ModelChannels {
   std::string output = "f";
 };
 
-/// Looks at the samples of every column, README "Screening" (ME-5 to ME-10), and takes out what is
+/// Looks at the samples of every column, README "Screening" (ME-7 to ME-12), and takes out what is
 /// no measurement: of a channel of the model its bad rows, another channel whole.  A fault that
 /// would leave less than half of the rows takes nothing out; it makes the channel unsound.
 /// Pure.  The rows' order in time is kept; rate and gaps are those of what is left.
