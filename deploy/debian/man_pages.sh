@@ -4,6 +4,7 @@
 # Usage: deploy/debian/man_pages.sh FOLDER PREFIX VERSION OUT PROGRAM...
 #   FOLDER  folder of the programs, whose help texts contain their own prefix
 #   PREFIX  replaces that prefix in the pages
+# EMULATOR, where it is set, runs the programs: those of another processor.
 set -euo pipefail
 programs=$(cd "$1" && pwd) prefix=$2 version=$3 out=$4
 shift 4
@@ -14,14 +15,14 @@ page() {  # page PROGRAM [VERB...]
   local program=$1 name help title option=--help
   shift
   name=$(IFS=-; echo "$program${*:+-$*}")
-  help=$("$programs/$program" "$@" --help)
+  help=$(${EMULATOR:-} "$programs/$program" "$@" --help)
   # Where it shows the options that people use first, it says so.
   if grep -q -e --help-all <<<"$help"; then option=--help-all; fi
   # The first sentence, or the text before the colon.
   title=$(sed -e '/^Usage:/,$ d' -e "s/^$program: //" <<<"$help" | tr '\n' ' ' | sed 's/[.:?;] .*//')
   # A page writes "-" as "\-". help2man does not support verbs: it uses the program's name as the page's name.
   help2man --no-info --section=1 --version-string="$version" --name="$title" --include="$files" \
-           --help-option="$* $option" "$programs/$program" |
+           --help-option="$* $option" "${EMULATOR:+$EMULATOR }$programs/$program" |
     sed -e "s|@prefix@|$prefix|" -e "s|${built//-/\\\\-}/|${prefix//-/\\\\-}/|g" -e "1,/^\.SH SYNOPSIS/ {
       s/^\.TH [^ ]*/.TH ${name^^}/
       s/^$program /${name//-/\\\\-} /
