@@ -165,7 +165,7 @@ void add_cancellers(report::Page& page, const Analysis& analysis) {
   }
   if (mitigates) {
     text +=
-        " The others are mitigations of `stillhand lab --conditions`. A mitigation that acts on "
+        " The others are mitigations of stillhand lab --conditions. A mitigation that acts on "
         "the command leaves the motor off.";
   }
   page.paragraph(text);

@@ -213,7 +213,7 @@ class RecordedConditionsTest(SampleExperimentCase):
         self.assertNotIn("subject 1<", (self.out / "fig06_feedthrough_models.svg").read_text())
         self.assertIn("C+ augmented", (self.out / "fig10_rms_error.svg").read_text())
         self.assertEqual({row["subject"] for row in rows(self.out / "metrics.csv")}, set(self.people))
-        self.assertIn("averaged", report)
+        self.assertIn("each metric is their mean", report)
 
     def test_each_participant_has_a_page_that_the_report_leads_to_and_back(self):
         pages = sorted(file.name for file in self.out.glob("participant_*.html"))

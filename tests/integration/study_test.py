@@ -128,7 +128,7 @@ class StudyTest(unittest.TestCase):
         self.assertEqual({path.name for path in out.iterdir()},
                          {"mitigations.csv", "mitigation_people.csv", "report.html",
                           *(f"mitigations_{task}.{ending}" for task in ("relax", "hold", "track")
-                            for ending in ("svg", "png"))})
+                            for ending in ("svg", "png", "csv"))})
         for table in (out / "report.html").read_text().split("<table")[1:]:
             head = len(re.findall("<th[ >]", table.split("</thead>")[0]))
             for row in table.split("<tbody")[1].split("</tbody>")[0].split("<tr")[1:]:

@@ -157,7 +157,7 @@ Table effect_table(const Diagnosis& found) {
       "linear part; a term beside the body adds to the output. p: the probability of such an "
       "improvement by chance, from the signed ranks of the blocks. Ties: other kinds that explain "
       "the record equally well; the simplest was taken. Carried: the part of the effect that the "
-      "saved model holds, so that `predict` uses it. `control-model` prints what the motor does "
+      "saved model holds, so that predict uses it. control-model prints what the motor does "
       "about it.";
   table.header = {
       "effect", "form", "evidence", "own size [" + shown_unit(found.output_unit) + "], 95 %",

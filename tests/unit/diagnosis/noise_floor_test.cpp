@@ -48,8 +48,8 @@ TEST(NoiseFloorTest, OfWhiteNoiseAllEstimatesAgree) {
   EXPECT_EQ(estimate(sut, "repeats"), 0.0);
   EXPECT_NEAR(estimate(sut, "high frequencies"), 0.05, 0.004);
   EXPECT_NEAR(estimate(sut, "between blocks"), 0.05, 0.004);
-  EXPECT_THAT(sut.method, StartsWith("residual of the final model"));
-  EXPECT_THAT(sut.method, HasSubstr("Others: high frequencies 0.0"));
+  EXPECT_THAT(sut.method, StartsWith("the residual of the final model"));
+  EXPECT_THAT(sut.method, HasSubstr("Other estimates: high frequencies 0.0"));
   EXPECT_THAT(sut.method, HasSubstr("between blocks 0.0"));
 }
 
