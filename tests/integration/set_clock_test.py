@@ -25,7 +25,8 @@ class SetClockTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
         self.domain = next_domain()
-        publisher = subprocess.Popen([BUILD / "tests" / "publish_samples", "--domain", str(self.domain)], stdout=subprocess.DEVNULL)
+        publisher = subprocess.Popen([BUILD / "tests" / "publish_samples", "--domain", str(self.domain)],
+                                     stdout=subprocess.DEVNULL)
         self.addCleanup(publisher.wait)
         self.addCleanup(publisher.kill)
 

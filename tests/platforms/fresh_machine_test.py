@@ -29,8 +29,8 @@ CLONE = "srv/clone"  # in the root
 SESSION = ("build/bin/stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out demo")
 SHORT = ("deploy/setup.sh", "deploy/build.sh tests", "ctest --test-dir build -L unit -j 2 --output-on-failure", SESSION)
 BOTH = ("deploy/demo.sh", "tests/run.sh", "cpack -G DEB --config build/CPackConfig.cmake")
-# $1 root, $2 command, $3 certificates, $4 clone. The command's processes end with it: it is the first of its own namespace. The root is the
-# namespace's own, no chroot, so that a program may enter the namespace by its name in /proc.
+# $1 root, $2 command, $3 certificates, $4 clone. The command's processes end with it: it is the first of its own
+# namespace. The root is the namespace's own, no chroot, so that a program may enter the namespace by its name in /proc.
 INSIDE = r"""
 set -e
 mount --make-rprivate /
