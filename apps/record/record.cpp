@@ -105,13 +105,14 @@ class Run {
     return wanted;
   }
 
-  // A pattern with a typing error would record nothing until somebody looks.
+  // A pattern with a typing error would record nothing until somebody looks. Said again when more
+  // topics are found: discovery of a busy bus takes its time, and a part of the list misleads.
   void warn_of_patterns() {
     std::set<std::string> there;
     {
       const std::lock_guard lock(seen_);
-      if (some_wanted_ || unwanted_.empty()) return;
-      some_wanted_ = true;  // said once
+      if (some_wanted_ || unwanted_.size() == unwanted_said_) return;
+      unwanted_said_ = unwanted_.size();
       there = unwanted_;
     }
     warn(
@@ -167,6 +168,7 @@ class Run {
   std::mutex seen_;
   bool some_wanted_ = false;        ///< of the topics on the bus
   std::set<std::string> unwanted_;  ///< the other ones
+  std::size_t unwanted_said_ = 0;   ///< of these
   std::optional<recording::BusRecording> recorded_;
   runtime::Tap tap_;  // its threads use the members above
   Remote remote_;

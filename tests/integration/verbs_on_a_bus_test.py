@@ -184,6 +184,9 @@ class RecordTest(Bus):
         recorder = self.verb("record", "--topics", "stilhand/*", "--out", self.folder / "a.mcap")
         wait_for("the topics of the bus", lambda: "stillhand/sensed" in recorder.said())
         self.assertIn("no topic", recorder.said())
+        # What is found after the first warning is named too.
+        self.start(LOAD, self.domain, 100, 60)
+        wait_for("a later topic", lambda: "load/0" in recorder.said())
 
     def test_a_request_without_a_recorder_is_answered_by_an_error(self):
         answer = self.remote("record", "pause")
