@@ -46,6 +46,6 @@ CellContent read_cell(std::string_view cell, char decimal, double& number);
 bool is_comment(std::string_view line);
 
 /// A cell for a message: in quotes, of limited length.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace stillhand::measurement

@@ -108,8 +108,8 @@ class TextTable : public TableFile {
         const std::string_view cell = cells[columns[i]];
         const CellContent content = read_cell(cell, layout_.form.decimal, number);
         if (content == CellContent::kText) {
-          fail(line, cell, quoted(plain_cell(cell)),
-               "a finite number in column " + quoted(layout_.titles[columns[i]]));
+          fail(line, cell, in_quotes(plain_cell(cell)),
+               "a finite number in column " + in_quotes(layout_.titles[columns[i]]));
         }
       }
       out.values[i].push_back(number);
