@@ -6,23 +6,16 @@
 #include <numbers>
 #include <utility>
 
+#include "services/rig/plant.hpp"
 #include "services/signal/spectrum.hpp"
 
 namespace stillhand::session {
 namespace {
 
-constexpr std::uint64_t kSeedMask = 0xffffffffu;  // the cores' seeds are 32-bit numbers
-
 CoreConfigs seeded(CoreConfigs configs, std::uint64_t seed) {
-  configs.rig.seed = static_cast<std::int64_t>(seed & kSeedMask);
+  configs.rig = rig::seeded(configs.rig, seed);
   configs.human_operator.seed = configs.rig.seed;
   return configs;
-}
-
-sensing::DeviceSample device_sample(const rig::RawSample& raw, Tick tick) {
-  return {tick,          raw.accel_x_v,   raw.accel_y_v,
-          raw.accel_z_v, raw.load_cell_v, raw.encoder_counts,
-          raw.roll_rad};
 }
 
 // The signals of a recorded trial; README, "The table of a trial".
@@ -75,8 +68,7 @@ double counterforce_delay_s(const std::vector<double>& feedthrough_n, std::vecto
 InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every,
                              rig::SealedEffect effect)
     : configs_(seeded(configs, seed)),
-      rig_(configs_.rig, std::move(effect)),
-      conditioner_(configs_.sensing),
+      loop_(configs_.rig, configs_.sensing, std::move(effect)),
       motion_(configs_.motion),
       countermeasure_(configs_.cancellation, {.force = true}),
       display_(configs_.display),
@@ -123,39 +115,18 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
   const bool covered = planned.trial.covers(tick);
   const bool tracking = covered && planned.trial.phase == TrialPhase::kTracking;
 
-  const motion::PlatformCommand command = motion_.step(tick);
-  rig::RigInput input;
-  input.command_valid = true;
-  input.command_position_m = command.position_m;
-  input.command_velocity_m_s = command.velocity_m_s;
-  input.command_acceleration_m_s2 = command.acceleration_m_s2;
-  input.motor_valid = true;
-  input.motor_age_ticks = 1;
-  input.motor_force_n = motor_force_n_;
-  input.motor_permitted = covered;
-  input.operator_valid = true;
-  input.operator_age_ticks = 1;
-  input.operator_force_n = operator_force_n_;
-  input.pegged = covered && planned.trial.phase == TrialPhase::kPegged;
-  const bool same_tick = configs_.rig.motor.answers_in_tick();
-  rig::RigOutput rig_out = same_tick ? rig_.sample(input) : rig_.step(input);
-
-  const sensing::Sensed sensed = conditioner_.step(device_sample(rig_out.raw, tick));
-  const bool enabled = planned.cancellation && tracking;
-  const cancellation::CountermeasureOutput cancelled =
-      countermeasure_.step({tick,
-                            {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
-                             sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
-                            sensed.flags,
-                            enabled,
-                            covered,
-                            {}});
-  motor_force_n_ = cancelled.force_n;
-  if (same_tick) {
-    input.motor_age_ticks = 0;
-    input.motor_force_n = motor_force_n_;
-    rig_.drive(input, rig_out);
-  }
+  cancellation::CountermeasureOutput cancelled{};
+  const auto [sensed, truth] = loop_.turn(
+      tick,
+      {.command = motion_.step(tick),
+       .operator_force_n = operator_force_n_,
+       .pegged = covered && planned.trial.phase == TrialPhase::kPegged,
+       .permitted = covered},
+      [&](const sensing::Sensed& sample) {
+        cancelled =
+            countermeasure_.step(input_of(tick, sample, planned.cancellation && tracking, covered));
+        return cancelled.force_n;
+      });
   const double command_rad =
       planned.command_filter ? command_filter_.step(sensed.theta_rad, cancelled.predicted_force_n)
                              : sensed.theta_rad;
@@ -163,7 +134,7 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
   operator_force_n_ =
       operator_.step({tick, shown.target_m, shown.cursor_m, tracking, sensed.accel_y_m_s2}).force_n;
   if (planned.trial.measures(tick)) {
-    keep(planned, sensed, rig_out.truth, cancelled, shown, signals);
+    keep(planned, sensed, truth, cancelled, shown, signals);
   }
 }
 
@@ -190,9 +161,9 @@ void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sen
 
 void InProcessLoop::keep_row(const sensing::Sensed& sensed, const display::TrackingSample& shown,
                              recording::Recording& rows) const {
-  const std::array<double, 10> row{sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
-                                   sensed.roll_rad,     sensed.theta_rad,    sensed.omega_rad_s,
-                                   sensed.force_n,      motor_force_n_,      shown.target_m,
+  const std::array<double, 10> row{sensed.accel_x_m_s2, sensed.accel_y_m_s2,   sensed.accel_z_m_s2,
+                                   sensed.roll_rad,     sensed.theta_rad,      sensed.omega_rad_s,
+                                   sensed.force_n,      loop_.motor_force_n(), shown.target_m,
                                    shown.cursor_m};
   rows.time_s.push_back(static_cast<double>(tick_) / kControlRateHz);
   for (std::size_t i = 0; i < rows.columns.size(); ++i) rows.columns[i].values.push_back(row[i]);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/session/loop.hpp"
 #include "apps/session/protocol.hpp"
 #include "apps/session/trial_forces.hpp"
 #include "services/cancellation/parts/command_filter.hpp"
@@ -15,8 +16,6 @@
 #include "services/identification/core/tracking_metrics.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/recording/core/recording.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/sensing/core/conditioner.hpp"
 
 namespace stillhand::session {
 
@@ -52,10 +51,9 @@ double cancelled_share(const std::vector<double>& feedthrough_n,
 double counterforce_delay_s(const std::vector<double>& feedthrough_n, std::vector<double> motor_n,
                             double rate_hz);
 
-/// The closed loop of a session in one process: the same cores in catalogue order, as fast as the
-/// machine goes.  The motor command drives the motor after the sample that it answers, as live, or
-/// with motor.answer_wait_s 0 at the beginning of the next tick; the operator force reaches the rig
-/// one whole tick later.  Deterministic.  One thread.
+/// The trials of a session in one process: the same cores in catalogue order around the Loop, as
+/// fast as the machine goes.  The operator force reaches the rig one whole tick later.
+/// Deterministic.  One thread.
 class InProcessLoop {
  public:
   /// @param seed        session seed, used as the processes use theirs
@@ -74,7 +72,7 @@ class InProcessLoop {
   cancellation::Refusal use_model(const identification::FeedthroughModel& model);
   cancellation::Refusal use_model(const cancellation::ControlModel& model);
   /// The effect of the rig, once the verdict on it is written: no trial runs after this call.
-  [[nodiscard]] rig::OpenedEffect open_effect() { return rig_.open_effect(); }
+  [[nodiscard]] rig::OpenedEffect open_effect() { return loop_.open_effect(); }
 
  private:
   void arm(const PlannedTrial& planned);
@@ -86,8 +84,7 @@ class InProcessLoop {
                 recording::Recording& rows) const;
 
   CoreConfigs configs_;
-  rig::Rig rig_;
-  sensing::Conditioner conditioner_;
+  Loop loop_;
   motion::MotionGenerator motion_;
   cancellation::Countermeasure countermeasure_;
   display::TrackingDisplay display_;
@@ -96,7 +93,6 @@ class InProcessLoop {
   Tick keep_every_;
   bool keeps_measured_ = false;
   Tick tick_ = 0;
-  double motor_force_n_ = 0.0;
   double operator_force_n_ = 0.0;
 };
 

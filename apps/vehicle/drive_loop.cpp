@@ -7,33 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "apps/session/protocol.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/motion/core/motion_profile.hpp"
+#include "services/rig/plant.hpp"
 
 namespace stillhand::vehicle {
 namespace {
 
 constexpr Tick kRamp_ticks = 1000;
 constexpr Tick kTail_ticks = 5000;  // of a drive: its RMS
-
-DriveConfigs seeded(DriveConfigs configs, std::uint64_t seed) {
-  configs.rig.seed = static_cast<std::int64_t>(seed & 0xffffffffu);
-  return configs;
-}
-
-// The paper's identification motion, as in apps/session.
-motion::MotionProfile pegged_profile(Tick duration_ticks, std::uint64_t seed) {
-  motion::MotionProfile profile;
-  profile.kind = motion::MotionKind::kBandNoise;
-  profile.seed = seed;
-  profile.band_high_hz = 4.0;
-  profile.band_order = 4;
-  profile.peak_m_s2 = 0.75 * 9.80665;
-  profile.rms_m_s2 = profile.peak_m_s2 / 3.8;
-  profile.duration_ticks = duration_ticks;
-  profile.ramp_ticks = kRamp_ticks;
-  return profile;
-}
 
 void keep_extremes(const motion::PlatformCommand& next, double theta_rad, DriveOutcome& out) {
   out.farthest_m = std::max(out.farthest_m, std::abs(next.position_m));
@@ -60,13 +42,11 @@ struct Passed {
 }  // namespace
 
 DriveLoop::DriveLoop(DriveConfigs configs, std::uint64_t seed)
-    : rig_(seeded(configs, seed).rig),
-      conditioner_(configs.sensing),
+    : loop_(rig::seeded(configs.rig, seed), configs.sensing),
       countermeasure_(configs.cancellation, {.force = true}),
       driven_(configs.driven),
       floor_rad_(configs.driven.oscillation.floor_rad),
-      ceiling_rad_(configs.driven.oscillation.ceiling_rad),
-      answers_in_tick_(configs.rig.motor.answers_in_tick()) {}
+      ceiling_rad_(configs.driven.oscillation.ceiling_rad) {}
 
 void DriveLoop::use_model(const identification::FeedthroughModel& model) {
   const auto refusal = countermeasure_.load_model(cancellation::control_model(model.control));
@@ -76,53 +56,31 @@ void DriveLoop::use_model(const identification::FeedthroughModel& model) {
   }
 }
 
-DriveLoop::Now DriveLoop::tick_once(const Asked& asked) {
+session::Turned DriveLoop::tick_once(const session::Turn& turn, bool cancel,
+                                     double perturbation_n) {
   const Tick tick = ++tick_;
-  rig::RigInput input;
-  input.command_valid = true;
-  input.command_position_m = asked.command.position_m;
-  input.command_velocity_m_s = asked.command.velocity_m_s;
-  input.command_acceleration_m_s2 = asked.command.acceleration_m_s2;
-  input.motor_valid = true;
-  input.motor_age_ticks = 1;
-  input.motor_force_n = motor_force_n_;
-  input.motor_permitted = asked.permitted;
-  input.pegged = asked.pegged;
-  rig::RigOutput out = answers_in_tick_ ? rig_.sample(input) : rig_.step(input);
-  const sensing::Sensed sensed =
-      conditioner_.step({tick, out.raw.accel_x_v, out.raw.accel_y_v, out.raw.accel_z_v,
-                         out.raw.load_cell_v, out.raw.encoder_counts, out.raw.roll_rad});
-  const auto cancelled =
-      countermeasure_.step({tick,
-                            {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
-                             sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
-                            sensed.flags,
-                            asked.cancel,
-                            asked.permitted,
-                            {}});
-  motor_force_n_ = cancelled.force_n + asked.perturbation_n;
-  if (answers_in_tick_) {
-    input.motor_age_ticks = 0;
-    input.motor_force_n = motor_force_n_;
-    rig_.drive(input, out);
-  }
-  return {sensed, out.truth, asked.command};
+  return loop_.turn(tick, turn, [&](const sensing::Sensed& sensed) {
+    const auto input = session::input_of(tick, sensed, cancel, turn.permitted);
+    return countermeasure_.step(input).force_n + perturbation_n;
+  });
 }
 
 void DriveLoop::settle(double seconds) {
-  for (Tick left = ticks_in(seconds); left > 0; --left) tick_once({last_command_});
+  for (Tick left = ticks_in(seconds); left > 0; --left) tick_once({.command = last_command_});
 }
 
 identification::Record DriveLoop::pegged(double seconds, std::uint64_t seed) {
-  const Tick duration = ticks_in(seconds);
-  const motion::MotionTrajectory trajectory(pegged_profile(duration, seed), {});
+  session::ProtocolOptions protocol;
+  protocol.identify_s = seconds;
+  protocol.ramp_s = static_cast<double>(kRamp_ticks) * kControlPeriod_s;
+  session::PlannedTrial planned = session::identification_trial(protocol);
+  planned.motion_seed = seed;
+  const motion::MotionTrajectory trajectory(session::motion_profile(planned), {});
+  const Tick duration = planned.trial.duration_ticks;
   identification::Record record;
   record.rate_hz = kControlRateHz;
   for (Tick n = 0; n < duration + 2 * kRamp_ticks; ++n) {
-    Asked asked;
-    asked.command = trajectory.at(n);
-    asked.pegged = true;
-    const Now now = tick_once(asked);
+    const session::Turned now = tick_once({.command = trajectory.at(n), .pegged = true});
     if (n < kRamp_ticks || n >= kRamp_ticks + duration) continue;
     record.acceleration_m_s2.push_back(now.sensed.accel_y_m_s2);
     record.force_n.push_back(now.sensed.force_n);
@@ -148,15 +106,14 @@ FreeStick DriveLoop::free_stick(const admittance::Excitation& excitation, int pe
     const double fade = std::min(2.0 * static_cast<double>(n) / static_cast<double>(period), 1.0);
     const double force = fade * forces[static_cast<std::size_t>(n % period)];
     const signal::MotionSample& moved = motions[static_cast<std::size_t>(n % period)];
-    Asked asked;
-    asked.command = guard.step(
+    session::Turn turn;
+    turn.command = guard.step(
         {true, {fade * moved.pos_m, fade * moved.vel_m_s, fade * moved.accel_m_s2, kGood}});
-    asked.perturbation_n = force;
-    asked.permitted = true;
-    const Now now = tick_once(asked);
+    turn.permitted = true;
+    const session::Turned now = tick_once(turn, false, force);
     if (n < period) continue;
     out.record.motor_force_n.push_back(force);
-    out.record.acceleration_m_s2.push_back(asked.command.acceleration_m_s2);
+    out.record.acceleration_m_s2.push_back(turn.command.acceleration_m_s2);
     out.record.displacement_m.push_back(now.sensed.theta_rad);
     out.record.hand_force_n.push_back(now.sensed.force_n);
     out.sensed_acceleration_m_s2.push_back(now.sensed.accel_y_m_s2);
@@ -189,12 +146,11 @@ DriveOutcome DriveLoop::run(double seconds, bool cancel) {
   Passed ceiling_passed{ceiling_rad_};
   while (tick_ < last && !(rests && still)) {
     const auto slot = static_cast<std::size_t>((tick_ + 1) % kLead_ticks);
-    Asked asked;
-    asked.command = ahead_[slot];
+    session::Turn turn;
+    turn.command = ahead_[slot];
     // A process that ends the drive opens the interlock; the motor then ramps to zero.
-    asked.permitted = trial.covers(tick_ + 1) && !driven_.ended();
-    asked.cancel = cancel;
-    const Now now = tick_once(asked);
+    turn.permitted = trial.covers(tick_ + 1) && !driven_.ended();
+    const session::Turned now = tick_once(turn, cancel);
     ahead_[slot] = driven_.step(
         {tick_, now.sensed.theta_rad, (now.sensed.flags & (kInputInvalid | kInputStale)) == 0});
     keep_extremes(ahead_[slot], now.truth.theta_rad, out);
@@ -216,7 +172,7 @@ DriveOutcome DriveLoop::run(double seconds, bool cancel) {
       if (ceiling_passed.since > 0) out.periods_from_ceiling = periods_since(ceiling_passed.since);
     }
     const double since_s = static_cast<double>(tick_ - ended) * kControlPeriod_s;
-    if (!rests && asked.command.velocity_m_s == 0.0 && asked.command.flags & kFault) {
+    if (!rests && turn.command.velocity_m_s == 0.0 && turn.command.flags & kFault) {
       rests = true;
       out.rest_s = since_s;
     }

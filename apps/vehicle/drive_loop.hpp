@@ -5,13 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "apps/session/loop.hpp"
 #include "services/admittance/core/interleaved_multisines.hpp"
 #include "services/admittance/core/line_responses.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/identification/core/identifier.hpp"
 #include "services/identification/core/record.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/sensing/core/conditioner.hpp"
 #include "services/vehicle/driven_motion.hpp"
 
 namespace stillhand::vehicle {
@@ -48,10 +46,8 @@ struct DriveOutcome {
   bool shaped = false;        ///< the guard or a bound shaped a command
 };
 
-/// The loop through the vehicle in one process: the cores of rig, sensing, cancellation and vehicle
-/// in catalogue order, with the edges of apps/session: the motor command drives the motor after the
-/// sample that it answers, a platform command answers the stick of 20 ticks before.  The subject
-/// holds the stick and steers nowhere.  Deterministic.  One thread.
+/// Drives of a vehicle around the session's Loop: a platform command answers the stick of 20 ticks
+/// before.  The subject holds the stick and steers nowhere.  Deterministic.  One thread.
 class DriveLoop {
  public:
   /// @param seed  of sensors and of the subject's own forces
@@ -69,34 +65,21 @@ class DriveLoop {
   DriveOutcome run(double seconds, bool cancel);
 
  private:
-  struct Now {
-    sensing::Sensed sensed;
-    rig::RigTruth truth;
-    motion::PlatformCommand command;
-  };
-  struct Asked {
-    motion::PlatformCommand command;
-    double perturbation_n = 0.0;
-    bool pegged = false;
-    bool cancel = false;
-    bool permitted = false;
-  };
-  Now tick_once(const Asked& asked);
+  /// @param perturbation_n  [N] on top of the countermeasure's force
+  session::Turned tick_once(const session::Turn& turn, bool cancel = false,
+                            double perturbation_n = 0.0);
   /// A trial that begins as soon as the lead allows.
   Trial next_trial(double seconds);
   /// Platform and motor to rest.
   void settle(double seconds);
 
-  rig::Rig rig_;
-  sensing::Conditioner conditioner_;
+  session::Loop loop_;
   cancellation::Countermeasure countermeasure_;
   DrivenMotion driven_;
   std::array<motion::PlatformCommand, kLead_ticks> ahead_{};
   motion::PlatformCommand last_command_;
   double floor_rad_;
   double ceiling_rad_;
-  bool answers_in_tick_;
-  double motor_force_n_ = 0.0;
   Tick tick_ = 0;
   std::int64_t trials_ = 0;
 };

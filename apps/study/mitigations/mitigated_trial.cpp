@@ -4,13 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "apps/session/loop.hpp"
 #include "apps/session/protocol.hpp"
-#include "apps/study/mitigations/hand_stand.hpp"
 #include "apps/study/subject_session.hpp"
 #include "services/display/core/tracking_display.hpp"
 #include "services/human_operator/core/crossover_operator.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/population/task.hpp"
+#include "services/rig/plant.hpp"
 #include "services/signal/butterworth.hpp"
 #include "services/signal/random.hpp"
 #include "services/signal/second_order_lag.hpp"
@@ -52,8 +53,7 @@ TrialFigures run_mitigated(const TrialScene& scene, const cancellation::Recipe& 
   const bool tracks = scene.task == TrialTask::kTrack;
   rig::RigConfig rig;
   rig.body = body_of(scene, arm_rest);
-  rig.seed = static_cast<std::int64_t>(scene.rig_seed & 0xffffffffu);
-  HandStand stand(rig);
+  session::Loop loop(rig::seeded(rig, scene.rig_seed), {});
   cancellation::Countermeasure mitigated({}, recipe);
   human_operator::CrossoverOperator person(who_of(scene, rig.body, recipe));
   display::TrackingDisplay screen(display::TrackingDisplay::Config{});
@@ -76,16 +76,14 @@ TrialFigures run_mitigated(const TrialScene& scene, const cancellation::Recipe& 
   const Tick end = trial.start_tick + trial.duration_ticks;
   for (Tick tick = 1; tick < end; ++tick) {
     const bool covered = trial.covers(tick);
-    const sensing::Sensed sensed = stand.sample(tick, platform.step(tick), operator_n, false);
-    const cancellation::CountermeasureOutput done =
-        mitigated.step({tick,
-                        {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
-                         sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
-                        sensed.flags,
-                        covered,
-                        covered,
-                        {}});
-    const rig::RigTruth& truth = stand.drive(done.force_n, covered);
+    cancellation::CountermeasureOutput done{};
+    const auto [sensed, truth] = loop.turn(
+        tick,
+        {.command = platform.step(tick), .operator_force_n = operator_n, .permitted = covered},
+        [&](const sensing::Sensed& sample) {
+          done = mitigated.step(session::input_of(tick, sample, covered, covered));
+          return done.force_n;
+        });
     const display::TrackingSample shown = screen.step({tick, done.command_rad});
     operator_n =
         person.step({tick, shown.target_m, shown.cursor_m, covered && tracks, sensed.accel_y_m_s2})

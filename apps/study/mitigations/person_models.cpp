@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "apps/session/loop.hpp"
 #include "apps/session/protocol.hpp"
-#include "apps/study/mitigations/hand_stand.hpp"
 #include "services/admittance/core/arm_fit.hpp"
 #include "services/admittance/core/interleaved_multisines.hpp"
 #include "services/contract/config_error.hpp"
@@ -15,6 +16,7 @@
 #include "services/identification/core/rate_conversion.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/population/task.hpp"
+#include "services/rig/plant.hpp"
 #include "services/signal/butterworth.hpp"
 
 namespace stillhand::study {
@@ -26,8 +28,7 @@ enum class RecordSeed : std::uint8_t { kPegged, kFree, kRelaxed, kHolding };
 rig::RigConfig rig_of(const rig::BodyConfig& body, std::uint64_t seed, RecordSeed use) {
   rig::RigConfig config;
   config.body = body;
-  config.seed = static_cast<std::int64_t>((seed + static_cast<std::uint64_t>(use)) & 0xffffffffu);
-  return config;
+  return rig::seeded(config, seed + static_cast<std::uint64_t>(use));
 }
 
 // Acceleration, with force on the pegged stick or with displacement of the free one in mm: the same
@@ -43,7 +44,7 @@ identification::Record moved(const population::Subject& subject, bool pegged, do
   platform.arm(motion::MotionTrajectory(session::motion_profile(planned), {}), planned.trial);
   const rig::BodyConfig body =
       pegged ? subject.body : population::doing(subject.body, population::Task::kHold);
-  HandStand stand(rig_of(body, seed, pegged ? RecordSeed::kPegged : RecordSeed::kFree));
+  session::Loop loop(rig_of(body, seed, pegged ? RecordSeed::kPegged : RecordSeed::kFree), {});
   const double lever_mm = 1000.0 * rig::StickConfig{}.lever_m;
   // The angle passes the filter that force and acceleration pass, so a ratio is not changed.
   signal::Butterworth of_angle(2, sensing::Config{}.antialias_cutoff_hz, kControlRateHz);
@@ -52,9 +53,10 @@ identification::Record moved(const population::Subject& subject, bool pegged, do
   const Tick last =
       planned.trial.start_tick + planned.trial.duration_ticks + planned.trial.ramp_ticks;
   for (Tick tick = 1; tick < last; ++tick) {
-    const sensing::Sensed sensed =
-        stand.sample(tick, platform.step(tick), 0.0, pegged && planned.trial.covers(tick));
-    stand.drive(0.0, false);
+    const session::Turn turn{.command = platform.step(tick),
+                             .operator_force_n = 0.0,
+                             .pegged = pegged && planned.trial.covers(tick)};
+    const auto [sensed, truth] = loop.turn(tick, turn, [](const auto&) { return 0.0; });
     const double displacement_mm = of_angle.step(lever_mm * sensed.theta_rad);
     if (!planned.trial.measures(tick)) continue;
     out.acceleration_m_s2.push_back(sensed.accel_y_m_s2);
@@ -70,7 +72,7 @@ admittance::ArmValues fitted_arm(const rig::BodyConfig& body, std::uint64_t seed
   const admittance::Excitation read =
       admittance::design({.rate_hz = kControlRateHz / static_cast<double>(kEvery)});
   const rig::RigConfig config = rig_of(body, seed, use);
-  HandStand stand(config);
+  session::Loop loop(config, {});
   const double cutoff_hz = sensing::Config{}.antialias_cutoff_hz;
   signal::Butterworth of_angle(2, cutoff_hz, kControlRateHz);
   signal::Butterworth of_motor(2, cutoff_hz, kControlRateHz);
@@ -80,10 +82,12 @@ admittance::ArmValues fitted_arm(const rig::BodyConfig& body, std::uint64_t seed
   double acted_n = 0.0;
   for (std::int64_t n = 0; n < (kAdmittancePeriods + 1) * period; ++n) {
     const signal::MotionSample moves = driven.motion.at(n);
-    const sensing::Sensed sensed =
-        stand.sample(n, {moves.pos_m, moves.vel_m_s, moves.accel_m_s2, kGood}, 0.0, false);
-    const double before_n = acted_n;
-    acted_n = stand.drive(driven.force.at(n).accel_m_s2, true).motor_force_n;
+    const session::Turn turn{.command = {moves.pos_m, moves.vel_m_s, moves.accel_m_s2, kGood},
+                             .operator_force_n = 0.0,
+                             .permitted = true};
+    const double force_n = driven.force.at(n).accel_m_s2;
+    const auto [sensed, truth] = loop.turn(n, turn, [&](const auto&) { return force_n; });
+    const double before_n = std::exchange(acted_n, truth.motor_force_n);
     // The force is held between samples: their mean is what acted at the sample.
     const double motor_n = of_motor.step(0.5 * (before_n + acted_n));
     const double displacement_m = of_angle.step(config.stick.lever_m * sensed.theta_rad);

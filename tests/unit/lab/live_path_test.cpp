@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "apps/lab/codec.hpp"
-#include "apps/study/mitigations/hand_stand.hpp"
+#include "apps/session/loop.hpp"
 #include "apps/study/mitigations/mitigated_trial.hpp"
 #include "services/cancellation/codec.hpp"
 #include "services/cancellation/parts/recipe.hpp"
@@ -21,7 +21,6 @@ namespace stillhand::lab {
 namespace {
 
 using session::Condition;
-using study::HandStand;
 using study::run_mitigated;
 using study::TrialScene;
 
@@ -67,7 +66,7 @@ double live_error_mm(const TrialScene& scene, const cancellation::Recipe& recipe
   rig::RigConfig rig;
   rig.body = scene.subject.body;
   rig.seed = static_cast<std::int64_t>(scene.rig_seed);
-  HandStand stand(rig);
+  session::Loop loop(rig, {});
   human_operator::CrossoverConfig who = scene.subject.who;
   who.seed = rig.seed;
   who.arm = population::learnt_feel(rig.body, {}, who.arm);
@@ -87,16 +86,20 @@ double live_error_mm(const TrialScene& scene, const cancellation::Recipe& recipe
   const Tick end = trial.start_tick + trial.duration_ticks;
   for (Tick tick = 1; tick < end; ++tick) {
     const bool covered = trial.covers(tick);
-    const auto sensed =
-        message_of(stand.sample(tick, platform.step(tick), operator_n, false), tick);
-    // The display has the sample before cancellation's answer to it.
-    const display::TrackingSample shown = screen.step(display::from_idl(sensed, command.at(tick)));
-    const auto input = cancellation::from_idl(sensed, covered, covered);
-    const auto answer = cancellation::to_idl(mitigated.step(input), input, sensed, -1, 1);
-    command.offer(display::from_idl(answer));
-    stand.drive(answer.force_n(), covered);
-    operator_n =
-        person.step({tick, shown.target_m, shown.cursor_m, covered, sensed.accel_y_m_s2()}).force_n;
+    display::TrackingSample shown{};
+    const session::Turn turn{
+        .command = platform.step(tick), .operator_force_n = operator_n, .permitted = covered};
+    const auto turned = loop.turn(tick, turn, [&](const sensing::Sensed& sample) {
+      const auto sensed = message_of(sample, tick);
+      // The display has the sample before cancellation's answer to it.
+      shown = screen.step(display::from_idl(sensed, command.at(tick)));
+      const auto input = cancellation::from_idl(sensed, covered, covered);
+      const auto answer = cancellation::to_idl(mitigated.step(input), input, sensed, -1, 1);
+      command.offer(display::from_idl(answer));
+      return answer.force_n();
+    });
+    const double accel_y_m_s2 = turned.sensed.accel_y_m_s2;
+    operator_n = person.step({tick, shown.target_m, shown.cursor_m, covered, accel_y_m_s2}).force_n;
     if (tick < trial.start_tick + scene.settle_ticks) continue;
     const double error_m = shown.cursor_m - shown.target_m;
     sum += error_m * error_m;
