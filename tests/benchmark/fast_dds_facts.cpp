@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this version of Fast DDS does where qos/README.md ("Fast DDS 2.9.1 and 3.1.2") has a row:
-// plain Fast DDS on loopback, a row of the table on standard output for each fact.
+// What this version of Fast DDS does where qos/RESULTS.md ("Facts of Fast DDS 2.9.1 and 3.1.2") has
+// a row: plain Fast DDS on loopback, a row of the table on standard output for each fact.
 // build/tests/fast_dds_facts [DOMAIN]; a minute.  A fact has a process of its own: one may crash.
 #include <sys/prctl.h>
 #include <sys/wait.h>

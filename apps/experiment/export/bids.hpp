@@ -18,9 +18,9 @@ struct Release {
   std::vector<std::string> authors;
 };
 
-/// Writes a data set of the Brain Imaging Data Structure into a staged folder: README, "BIDS".
-/// Sources: the BIDS specification 1.11.1, "Motion" and "Behavioral experiments"; Jeung et al.,
-/// Scientific Data 11, 716 (2024); Gorgolewski et al., Scientific Data 3, 160044 (2016).
+/// Writes a data set of the Brain Imaging Data Structure into a staged folder: README, "The data
+/// set". Sources: the BIDS specification 1.11.1, "Motion" and "Behavioral experiments"; Jeung et
+/// al., Scientific Data 11, 716 (2024); Gorgolewski et al., Scientific Data 3, 160044 (2016).
 /// @returns trials left out, one line each: fewer than two samples
 /// @throws std::runtime_error when the disk refuses; study::Interrupted; as rows_of()
 std::vector<std::string> write_bids(const DataSet& set, const Folder& folder,

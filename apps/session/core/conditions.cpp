@@ -12,7 +12,7 @@ namespace {
 using cancellation::Part;
 using cancellation::PartKind;
 
-// SU-18, apps/study/README.md "Chosen".
+// SU-18, apps/study/RESULTS.md "Chosen".
 constexpr double kLowPass_hz = 0.7;
 constexpr double kLowPassDamping = 0.7;
 constexpr double kNotch_hz = 1.2;
