@@ -25,6 +25,7 @@ struct AnnouncedWriter {
   std::string type;  ///< DDS type name
   edds::WriterQos qos;
   bool here = true;
+  std::string idl = {};  ///< definition of the type, if discovery describes it
 };
 
 }  // namespace stillhand::runtime

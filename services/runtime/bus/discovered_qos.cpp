@@ -26,6 +26,12 @@ constexpr std::int32_t kUnknownDepth = 100;
 
 }  // namespace
 
+void announce(edds::DataRepresentationQosPolicy& policy,
+              std::vector<edds::DataRepresentationId_t> offered) {
+  policy.m_value = std::move(offered);
+  policy.hasChanged = true;
+}
+
 WriterQos discovered_qos(const edds::WriterQos& announced) {
   WriterQos qos;
   qos.reliable = announced.m_reliability.kind == edds::RELIABLE_RELIABILITY_QOS;
@@ -35,6 +41,9 @@ WriterQos discovered_qos(const edds::WriterQos& announced) {
   qos.deadline_ns = ns_of(announced.m_deadline.period);
   qos.lifespan_ns = ns_of(announced.m_lifespan.duration);
   qos.lease_ns = ns_of(announced.m_liveliness.lease_duration);
+  // A writer uses the first that it offers; none is plain CDR.
+  const auto& offered = announced.representation.m_value;
+  qos.xcdr2 = !offered.empty() && offered.front() == edds::XCDR2_DATA_REPRESENTATION;
   return qos;
 }
 
@@ -65,6 +74,7 @@ edds::DataWriterQos offered_qos(const WriterQos& wanted) {
       wanted.exclusive ? edds::EXCLUSIVE_OWNERSHIP_QOS : edds::SHARED_OWNERSHIP_QOS;
   qos.deadline().period = duration_of(wanted.deadline_ns);
   qos.lifespan().duration = duration_of(wanted.lifespan_ns);
+  if (wanted.xcdr2) announce(qos.representation(), {edds::XCDR2_DATA_REPRESENTATION});
   const std::int32_t depth = wanted.depth > 0 ? wanted.depth : kUnknownDepth;
   if (wanted.depth < 0) {
     qos.history().kind = edds::KEEP_ALL_HISTORY_QOS;

@@ -6,6 +6,7 @@
 #include <fastdds/dds/publisher/qos/WriterQos.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fast_dds/names.hpp"
 #include "services/runtime/bus/writer_qos.hpp"
@@ -14,6 +15,10 @@ namespace stillhand::runtime {
 
 /// The QoS of a writer, as announced by discovery.
 WriterQos discovered_qos(const edds::WriterQos& announced);
+
+/// Sets what an endpoint offers or accepts; discovery leaves out what is not marked as changed.
+void announce(edds::DataRepresentationQosPolicy& policy,
+              std::vector<edds::DataRepresentationId_t> offered);
 
 /// A writer that offers the same; resource limits as for KEEP_LAST of its depth.
 edds::DataWriterQos offered_qos(const WriterQos& wanted);

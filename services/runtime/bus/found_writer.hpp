@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "services/runtime/bus/writer_qos.hpp"
 
@@ -17,6 +18,9 @@ struct FoundWriter {
   std::string participant;  ///< its name; "" until DDS announces it
   std::string id;           ///< GUID as text
   std::string profile;      ///< QoS profile of a topic of the catalogue, or ""
+  std::string user_data;    ///< USER_DATA if it is a text, for example ROS 2's hash of the type
+  /// Definition of the type, from idl/ or from discovery; "": not known.  As long as the Tap.
+  std::string_view idl;
   WriterQos qos;
   bool replayed = false;    ///< it carries the replay's mark
   bool type_known = false;  ///< idl/ defines its type

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
 #include "services/runtime/bus/discovered_qos.hpp"
 #include "services/runtime/bus/participant.hpp"
@@ -11,6 +12,22 @@
 #include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
+
+namespace {
+
+// RTPS 2.3, table 9.1: kind of a writer of an application whose type has a key.
+constexpr ertps::octet kWriterWithKey = 0x02;
+
+/// "" of bytes that are no text of one line.
+std::string text_of(const std::vector<std::uint8_t>& user_data) {
+  constexpr std::size_t kMost = 256;
+  const bool text = user_data.size() <= kMost && std::ranges::all_of(user_data, [](std::uint8_t c) {
+                      return c >= ' ' && c < 0x7f;
+                    });
+  return text ? std::string(user_data.begin(), user_data.end()) : "";
+}
+
+}  // namespace
 
 void FoundWriters::learn_depths(const edds::Publisher& publisher,
                                 const std::filesystem::path& profiles) {
@@ -64,7 +81,10 @@ std::optional<std::size_t> FoundWriters::note_writer(const AnnouncedWriter& anno
   if (name != participants_.end()) writer.participant = name->second;
   writer.qos = discovered_qos(announced.qos);
   writer.replayed = is_replay_mark(announced.qos.m_userData.data_vec());
+  writer.user_data = text_of(announced.qos.m_userData.data_vec());
   writer.type_known = find_type(writer.type) != nullptr;
+  writer.idl = writer.type_known ? topics::idl_of(writer.type) : keep(announced.idl);
+  writer.qos.keyed = announced.guid.entityId.value[3] == kWriterWithKey;
   writer.wanted = wanted;
   if (const topics::Topic* row = topics::find(writer.topic); row != nullptr) {
     writer.profile = std::string(topics::profile_of(row->pattern));
@@ -72,6 +92,14 @@ std::optional<std::size_t> FoundWriters::note_writer(const AnnouncedWriter& anno
   by_handle_.emplace(handle, next_);
   writers_.emplace(next_, Entry{std::move(writer), handle, false});
   return next_++;
+}
+
+std::string_view FoundWriters::keep(const std::string& idl) {
+  const auto known = idl_.find(idl);
+  if (known != idl_.end()) return *known;
+  if (idl.size() > kMostIdlBytes - idl_bytes_) return {};
+  idl_bytes_ += idl.size();
+  return *idl_.insert(idl).first;
 }
 
 bool FoundWriters::make_room() {

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,12 @@ namespace stillhand::runtime {
 
 /// Discovered writers, numbered in the order of discovery.  Those that left stay, up to kMost
 /// altogether: then the first that left without a sample makes room, and if there is none, a new
-/// writer is not found.  So strangers that come and go fill no memory.  Any thread; every call
-/// locks.
+/// writer is not found.  So strangers that come and go fill no memory, and neither do their types:
+/// beyond kMostIdlBytes a further definition is not kept.  Any thread; every call locks.
 class FoundWriters {
  public:
   static constexpr std::size_t kMost = 65535;  ///< what one recording can hold (MCAP)
+  static constexpr std::size_t kMostIdlBytes = std::size_t{16} << 20;  ///< [B]
   using Handle = ertps::InstanceHandle_t;
 
   /// Discovery does not carry HISTORY, so the depth is that of the catalogue's profiles.  Before
@@ -46,6 +48,7 @@ class FoundWriters {
     bool heard = false;  ///< a sample came from it
   };
   [[nodiscard]] FoundWriter complete(FoundWriter writer) const;
+  std::string_view keep(const std::string& idl);
   bool make_room();
 
   mutable std::mutex mutex_;
@@ -54,6 +57,8 @@ class FoundWriters {
   std::map<Handle, std::size_t> by_handle_;
   std::map<ertps::GuidPrefix_t, std::string> participants_;
   std::map<std::string, std::int32_t> depth_of_;  // by profile
+  std::set<std::string> idl_;                     // each text once
+  std::size_t idl_bytes_ = 0;
 };
 
 /// The writers of one reader's samples, as known at the first sample of each.  Locks only

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "fast_dds/discovery.hpp"
 #include "fast_dds/profiles.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/replay_mark.hpp"
@@ -91,8 +92,7 @@ ConfigError missing_profile(const std::filesystem::path& profiles, const char* k
 edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
                                             std::uint32_t domain, const std::string& name,
                                             bool marked, const Identity& identity,
-                                            edds::DomainParticipantListener* listener,
-                                            const AdaptQos& adapt) {
+                                            DiscoveryListener* listener, const AdaptQos& adapt) {
   if (domain > kMaxDomain) {
     throw ConfigError("domain", std::to_string(domain), "0 to " + std::to_string(kMaxDomain));
   }
@@ -112,7 +112,9 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   } else if (adapt) {
     adapt(qos);
   }
-  auto* participant = factory->create_participant(domain, qos, listener, edds::StatusMask::none());
+  static DiscoveryListener quiet;  // none would let type objects through: fast_dds/v2/discovery.hpp
+  auto* participant = factory->create_participant(
+      domain, qos, listener != nullptr ? listener : &quiet, edds::StatusMask::none());
   if (participant == nullptr) {
     throw BusError("Fast DDS created no participant on domain " + std::to_string(domain) +
                    ": are its UDP ports free?");

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -16,6 +15,8 @@ namespace stillhand::runtime {
 /// Reads the profile file into the factory, once a process.  @throws ConfigError
 void load_profiles(const std::filesystem::path& file);
 
+class DiscoveryListener;
+
 /// Changes the QoS of a participant before it is created.
 using AdaptQos = std::function<void(edds::DomainParticipantQos&)>;
 
@@ -27,7 +28,7 @@ using AdaptQos = std::function<void(edds::DomainParticipantQos&)>;
 edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
                                             std::uint32_t domain, const std::string& name,
                                             bool marked, const Identity& identity,
-                                            edds::DomainParticipantListener* listener,
+                                            DiscoveryListener* listener,
                                             const AdaptQos& adapt = {});
 
 /// The error of a profile file that lacks one.

@@ -10,11 +10,13 @@
 #include <map>
 #include <vector>
 
-#include "fast_dds/types.hpp"
+#include "fast_dds/discovery.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/discovered_qos.hpp"
+#include "services/runtime/bus/found_writers.hpp"
 #include "services/runtime/bus/participant.hpp"
 #include "services/runtime/bus/replay_mark.hpp"
+#include "services/runtime/bus/serialized_sample.hpp"
 #include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
@@ -36,13 +38,22 @@ struct Writer final : edds::DataWriterListener {
 
 }  // namespace
 
-struct Playback::Impl {
-  ~Impl() {
+struct Playback::Impl final : DiscoveryListener {
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() override {
     if (participant == nullptr) return;  // it was refused
     participant->delete_contained_entities();
     edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
   }
 
+  void on_participant(const AnnouncedParticipant& announced) override {
+    found.note_participant(announced);
+  }
+  void on_writer(const AnnouncedWriter& announced) override { found.note_writer(announced); }
+
+  FoundWriters found;
   std::vector<std::unique_ptr<Writer>> writers;
   std::map<std::string, edds::Topic*> topics;
   edds::DomainParticipant* participant = nullptr;
@@ -53,7 +64,7 @@ struct Playback::Impl {
 Playback::Playback(const std::filesystem::path& profiles, std::uint32_t domain,
                    const std::string& name)
     : impl_(std::make_unique<Impl>()) {
-  impl_->participant = create_participant(profiles, domain, name, true, {}, nullptr);
+  impl_->participant = create_participant(profiles, domain, name, true, {}, impl_.get());
   impl_->publisher = impl_->participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
   if (impl_->publisher == nullptr) throw BusError("Fast DDS created no publisher");
 }
@@ -63,6 +74,8 @@ Playback::Playback(Playback&&) noexcept = default;
 
 bool Playback::knows(const std::string& type) { return find_type(type) != nullptr; }
 
+bool Playback::offers(const WriterQos& qos) { return kHasXcdr2 || !qos.xcdr2; }
+
 std::optional<WriterQos> Playback::profile(const std::string& name) const {
   return profile_qos(*impl_->publisher, name);
 }
@@ -71,7 +84,7 @@ std::size_t Playback::add_writer(const std::string& topic, const std::string& ty
                                  const WriterQos& wanted) {
   edds::Topic*& known = impl_->topics[topic];
   if (known == nullptr) {
-    const edds::TypeSupport carrier(new SerializedType(find_type(type)->support));
+    const edds::TypeSupport carrier = carrier_of(type, wanted.keyed);
     carrier.register_type(impl_->participant);
     known = impl_->participant->create_topic(topic, type, edds::TOPIC_QOS_DEFAULT);
   }
@@ -90,6 +103,15 @@ std::size_t Playback::add_writer(const std::string& topic, const std::string& ty
 bool Playback::write(std::size_t writer, std::span<const std::byte> bytes) {
   impl_->sample.assign(bytes.begin(), bytes.end());
   return ok(impl_->writers[writer]->writer->write(&impl_->sample));
+}
+
+std::map<std::string, std::string> Playback::other_writers() const {
+  std::map<std::string, std::string> names;
+  for (const FoundWriter& each : impl_->found.all()) {
+    if (!each.present || each.replayed) continue;
+    names[each.topic] = each.participant.empty() ? each.id : each.participant;
+  }
+  return names;
 }
 
 std::uint32_t Playback::matched(std::size_t writer) const {

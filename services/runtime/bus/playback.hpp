@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,12 +28,16 @@ class Playback {
 
   /// idl/ defines this type.
   [[nodiscard]] static bool knows(const std::string& type);
+  /// Its writers can offer the representation of the samples.
+  [[nodiscard]] static bool offers(const WriterQos& qos);
   /// The QoS of a writer profile of the file; nothing when it is missing.
   [[nodiscard]] std::optional<WriterQos> profile(const std::string& name) const;
-  /// @param type  a type for which knows() is true  @returns its number  @throws BusError
+  /// @param type  of qos.keyed, unless idl/ defines it  @returns its number  @throws BusError
   std::size_t add_writer(const std::string& topic, const std::string& type, const WriterQos& qos);
   /// CDR with its encapsulation header.  @returns false when DDS did not take it.
   bool write(std::size_t writer, std::span<const std::byte> bytes);
+  /// Topics that other participants write now, replays excepted, and the name of one of each.
+  [[nodiscard]] std::map<std::string, std::string> other_writers() const;
   /// Readers matched with this writer now.
   [[nodiscard]] std::uint32_t matched(std::size_t writer) const;
   /// Waits until reliable readers have everything, or for `limit_ns`.

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "fast_dds/types.hpp"
+#include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
 
@@ -32,6 +33,12 @@ bool key_of_bytes(const edds::TypeSupport& real, std::span<const std::byte> byte
                   ertps::InstanceHandle_t& key, bool force_md5) {
   const auto message = message_of(*real);
   return from_bytes(real, bytes, message.get()) && key_of(*real, message.get(), key, force_md5);
+}
+
+edds::TypeSupport carrier_of(const std::string& type, bool keyed) {
+  const TypeTag* known = find_type(type);
+  return edds::TypeSupport(known != nullptr ? new SerializedType(known->support)
+                                            : new SerializedType(type, keyed));
 }
 
 }  // namespace stillhand::runtime

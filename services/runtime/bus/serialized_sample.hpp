@@ -27,4 +27,7 @@ bool from_bytes(const edds::TypeSupport& real, std::span<const std::byte> bytes,
 bool key_of_bytes(const edds::TypeSupport& real, std::span<const std::byte> bytes,
                   ertps::InstanceHandle_t& key, bool force_md5);
 
+/// Carries the bytes of a type, whether idl/ defines it or only its name is known.
+edds::TypeSupport carrier_of(const std::string& type, bool keyed);
+
 }  // namespace stillhand::runtime

@@ -18,13 +18,13 @@
 #include <thread>
 
 #include "fast_dds/discovery.hpp"
-#include "fast_dds/types.hpp"
 #include "idl/topics.hpp"
 #include "services/runtime/bus/batched/batched_reader.hpp"
 #include "services/runtime/bus/bus.hpp"
+#include "services/runtime/bus/discovered_qos.hpp"
 #include "services/runtime/bus/found_writers.hpp"
 #include "services/runtime/bus/participant.hpp"
-#include "services/runtime/bus/type_tag.hpp"
+#include "services/runtime/bus/serialized_sample.hpp"
 #include "services/runtime/process/log_clock.hpp"
 
 namespace stillhand::runtime {
@@ -39,6 +39,9 @@ ReaderClass class_of(const WriterQos& qos) {
   return qos.durability == Durability::kVolatile ? ReaderClass::kReliable
                                                  : ReaderClass::kReliableLatched;
 }
+
+// Topics of strangers: each costs a reader.
+constexpr std::size_t kMostForeign = 1000;
 
 const char* profile_of(ReaderClass reader_class) {
   switch (reader_class) {
@@ -75,15 +78,16 @@ struct Tap::Impl final : DiscoveryListener {
   }
   void on_writer(const AnnouncedWriter& announced) override;
   void open_readers(const std::stop_token& stop);
-  void open_reader(const ReaderKey& key, const std::string& type);
+  void open_reader(const ReaderKey& key, const FoundWriter& writer);
   void report(std::string line);
+  void note(std::string line);  // the same with the mutex locked
 
   Options options;
   FoundWriters writers;
   mutable std::mutex mutex;
   std::condition_variable_any wake;
   std::set<ReaderKey> asked_for;
-  std::deque<std::pair<ReaderKey, std::string>> waiting;
+  std::deque<std::pair<ReaderKey, FoundWriter>> waiting;  // each reader's first writer
   std::vector<std::string> trouble;
   std::atomic<std::uint64_t> unattributed{0};
   std::optional<BatchedReader> batched;  // Options::batched
@@ -134,28 +138,40 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
   SampleWriters writer_of;
 };
 
-void Tap::Impl::on_writer(const AnnouncedWriter& announced) {
+void Tap::Impl::on_writer(const AnnouncedWriter& found) {
+  AnnouncedWriter announced = found;
+  if (announced.idl.empty() && options.idl_of) announced.idl = options.idl_of(announced.type);
   const auto number = writers.note_writer(announced, options.wanted(announced.topic));
   if (!number) return;
   const FoundWriter writer = writers.at(*number);
   if (!writer.wanted) return;
   const auto& partitions = announced.qos.m_partition.names();
   const ReaderKey key{writer.topic, class_of(writer.qos)};
+  // A stranger's type under a name of the catalogue would keep the real one out.
+  const bool read =
+      writer.type_known || (options.any_type && topics::find(writer.topic) == nullptr);
   const std::lock_guard lock(mutex);
   if (!partitions.empty()) {
-    trouble.push_back(writer.topic + ": a writer in the partition \"" + partitions.front() +
-                      "\" is not received");
+    note(writer.topic + ": a writer in the partition \"" + partitions.front() +
+         "\" is not received");
   }
-  if (writer.type_known && asked_for.insert(key).second) {
-    waiting.emplace_back(key, writer.type);
-    wake.notify_all();
+  if (read && writer.qos.xcdr2 && !kHasXcdr2) {
+    note(writer.topic + ": a writer that offers XCDR 2 is not received: Fast DDS 2 " +
+         "requests plain CDR alone");
   }
+  if (!read || asked_for.count(key) != 0) return;
+  if (!writer.type_known && asked_for.size() >= kMostForeign) {
+    return note("of so many topics some are not received");
+  }
+  asked_for.insert(key);
+  waiting.emplace_back(key, writer);
+  wake.notify_all();
 }
 
 // DDS holds its own locks while it announces a writer, so readers are created in this thread.
 void Tap::Impl::open_readers(const std::stop_token& stop) {
   for (;;) {
-    std::pair<ReaderKey, std::string> next;
+    std::pair<ReaderKey, FoundWriter> next;
     {
       std::unique_lock lock(mutex);
       if (!wake.wait(lock, stop, [this] { return !waiting.empty(); })) return;
@@ -166,10 +182,11 @@ void Tap::Impl::open_readers(const std::stop_token& stop) {
   }
 }
 
-void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
+void Tap::Impl::open_reader(const ReaderKey& key, const FoundWriter& writer) {
   const std::string& name = key.first;
+  const std::string& type = writer.type;
   if (topics.count(name) == 0) {
-    const edds::TypeSupport carrier(new SerializedType(find_type(type)->support));
+    const edds::TypeSupport carrier = carrier_of(type, writer.qos.keyed);
     carrier.register_type(participant);
     topics[name] = participant->create_topic(name, type, edds::TOPIC_QOS_DEFAULT);
   }
@@ -181,6 +198,11 @@ void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
     return report(name + ": no data_reader profile \"" + profile_of(key.second) + "\" in " +
                   options.profiles.string());
   }
+  announce(representation(qos), {edds::XCDR_DATA_REPRESENTATION, edds::XCDR2_DATA_REPRESENTATION});
+  if (!writer.type_known) {  // with any number of keys
+    qos.resource_limits().max_instances = edds::LENGTH_UNLIMITED;
+    qos.resource_limits().max_samples = edds::LENGTH_UNLIMITED;
+  }
   auto reader = std::make_unique<Reader>(*this, key);
   reader->reader = subscriber->create_datareader(topics[name], qos, reader.get());
   if (reader->reader == nullptr) return report(name + ": Fast DDS refused a reader");
@@ -189,6 +211,10 @@ void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
 
 void Tap::Impl::report(std::string line) {
   const std::lock_guard lock(mutex);
+  note(std::move(line));
+}
+
+void Tap::Impl::note(std::string line) {
   if (std::find(trouble.begin(), trouble.end(), line) == trouble.end()) {
     trouble.push_back(std::move(line));
   }

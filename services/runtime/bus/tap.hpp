@@ -32,6 +32,9 @@ class Tap {
     bool batched = false;
     std::function<bool(const std::string& topic)> wanted;
     std::function<void(const FoundWriter&, const TappedSample&)> on_sample;
+    bool any_type = false;  ///< also topics outside the catalogue whose type idl/ does not define
+    /// Optional: definition of a type that discovery does not describe, or "".
+    std::function<std::string(const std::string& type)> idl_of = {};
   };
 
   /// @throws ConfigError for a bad domain, profile file or security folder; BusError when DDS

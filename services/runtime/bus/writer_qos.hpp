@@ -23,6 +23,8 @@ struct WriterQos {
   std::int64_t lease_ns = kForever_ns;  ///< of LIVELINESS
   /// Discovery does not carry HISTORY: 0 unless the writer's profile is known.
   std::int32_t depth = 0;  ///< [-] KEEP_LAST, -1: KEEP_ALL, 0: not known
+  bool xcdr2 = false;      ///< DATA_REPRESENTATION: samples are XCDR 2 instead of plain CDR
+  bool keyed = false;      ///< its type has a key: a reader without one does not match
   bool operator==(const WriterQos&) const = default;
 };
 

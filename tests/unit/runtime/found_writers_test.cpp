@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "idl/idl_text.hpp"
 #include "tests/unit/runtime/announced.hpp"
 
 namespace stillhand::runtime {
@@ -53,8 +54,41 @@ TEST(FoundWritersTest, AStrangersTopicHasNoProfileAndItsTypeIsNotKnown) {
   sut.note_writer(writer(7, 1, "chatter", "std_msgs::String", {1, 2, 3}));
   EXPECT_EQ(sut.at(0).profile, "");
   EXPECT_FALSE(sut.at(0).type_known);
+  EXPECT_EQ(sut.at(0).idl, "");
+  EXPECT_EQ(sut.at(0).user_data, "");  // no text
+  EXPECT_TRUE(sut.at(0).qos.keyed);
   EXPECT_FALSE(sut.at(0).replayed);
   EXPECT_TRUE(sut.at(0).wanted);
+}
+
+TEST(FoundWritersTest, TheDefinitionThatDiscoveryGivesIsKeptExceptOfOurOwnTypes) {
+  FoundWriters sut;
+  AnnouncedWriter stranger = writer(7, 1, "chatter", "std_msgs::String", {'h', '=', '1'});
+  stranger.idl = "a definition";
+  stranger.guid.entityId.value[3] = 0x03;  // without a key
+  stranger.qos.representation.m_value = {edds::XCDR2_DATA_REPRESENTATION,
+                                         edds::XCDR_DATA_REPRESENTATION};
+  sut.note_writer(stranger);
+  AnnouncedWriter ours = sensed(8);
+  ours.idl = "another definition";
+  sut.note_writer(ours);
+  EXPECT_EQ(sut.at(0).idl, "a definition");
+  EXPECT_EQ(sut.at(0).user_data, "h=1");
+  EXPECT_FALSE(sut.at(0).qos.keyed);
+  EXPECT_TRUE(sut.at(0).qos.xcdr2);
+  EXPECT_EQ(sut.at(1).idl, topics::idl_of("stillhand_msgs::Sensed"));
+  EXPECT_FALSE(sut.at(1).qos.xcdr2);
+}
+
+TEST(FoundWritersTest, DefinitionsWithoutAnEndFillNoMemory) {
+  FoundWriters sut;
+  const std::size_t each = FoundWriters::kMostIdlBytes / 4;
+  for (std::uint8_t number = 0; number < 6; ++number) {
+    AnnouncedWriter stranger = writer(7, number, "chatter", "std_msgs::String");
+    stranger.idl = std::string(each, static_cast<char>('a' + number));
+    sut.note_writer(stranger);
+    EXPECT_EQ(sut.at(number).idl.size(), number < 4 ? each : 0) << int{number};
+  }
 }
 
 // Each comes with a writer of its own, and leaves.

@@ -11,8 +11,8 @@ namespace stillhand::runtime {
 /// Passes on what discovery announces, in the form that does not depend on Fast DDS's version.
 class DiscoveryListener : public edds::DomainParticipantListener {
  public:
-  virtual void on_participant(const AnnouncedParticipant& participant) = 0;
-  virtual void on_writer(const AnnouncedWriter& writer) = 0;
+  virtual void on_participant(const AnnouncedParticipant& /*participant*/) {}
+  virtual void on_writer(const AnnouncedWriter& /*writer*/) {}
 
  private:
   void on_participant_discovery(edds::DomainParticipant* /*own*/,
@@ -28,6 +28,22 @@ class DiscoveryListener : public edds::DomainParticipantListener {
     on_writer({info.info.guid(), info.info.topicName().to_string(),
                info.info.typeName().to_string(), info.info.m_qos,
                info.status != ertps::WriterDiscoveryInfo::REMOVED_WRITER});
+    forget_type(info.info);
+  }
+  void on_subscriber_discovery(edds::DomainParticipant* /*own*/,
+                               ertps::ReaderDiscoveryInfo&& info) final {
+    forget_type(info.info);
+  }
+
+  // After this call Fast DDS 2.9.1 makes a dynamic type of a type object that the endpoint
+  // announces, and ends with a segmentation fault where the object names a type that it does not
+  // hold itself, as a sequence of a struct: any program on the domain could end every process.  The
+  // object is Fast DDS's own record, which is not const.
+  template <typename Endpoint>
+  static void forget_type(const Endpoint& announced) {
+    auto& endpoint = const_cast<Endpoint&>(announced);
+    if (endpoint.has_type()) endpoint.type() = edds::TypeObjectV1();
+    if (endpoint.has_type_id()) endpoint.type_id() = edds::TypeIdV1();
   }
 };
 

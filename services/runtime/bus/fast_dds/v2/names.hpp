@@ -8,6 +8,7 @@
 #include <fastrtps/utils/IPLocator.h>
 
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 
 namespace stillhand::runtime {
 
@@ -31,6 +32,13 @@ inline bool ok(bool written) { return written; }
 
 inline edds::Duration_t& heartbeat_period(edds::DataWriterQos& qos) {
   return qos.reliable_writer_qos().times.heartbeatPeriod;
+}
+
+/// It announces no DATA_REPRESENTATION, so that its peers take it for plain CDR alone.
+inline constexpr bool kHasXcdr2 = false;
+
+inline auto& representation(edds::DataReaderQos& qos) {
+  return qos.type_consistency().representation;
 }
 
 }  // namespace stillhand::runtime

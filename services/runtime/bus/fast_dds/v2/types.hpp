@@ -49,13 +49,21 @@ struct SharedType final : Generated {
 };
 
 /// Stands in for a real type and keeps each sample's bytes.  Matches the other ends of the real
-/// type, since name and key agree.
+/// type, since name and key agree.  Of a type of which only the name is known, no key is computed:
+/// a sample that comes without a hash of its key counts as the one instance; one that goes out has
+/// none.
 class SerializedType final : public edds::TopicDataType {
  public:
   explicit SerializedType(edds::TypeSupport real) : real_(std::move(real)) {
     setName(real_->getName());
     m_typeSize = real_->m_typeSize;
     m_isGetKeyDefined = real_->m_isGetKeyDefined;
+  }
+  SerializedType(const std::string& name, bool keyed) {
+    constexpr std::uint32_t kFirstBytes = 256;  // Fast DDS reserves more when a sample needs it
+    setName(name.c_str());
+    m_typeSize = kFirstBytes;
+    m_isGetKeyDefined = keyed;
   }
   bool serialize(void* data, ertps::SerializedPayload_t* payload) override {
     return put(*static_cast<const SerializedSample*>(data), *payload);
@@ -72,7 +80,8 @@ class SerializedType final : public edds::TopicDataType {
   void* createData() override { return new SerializedSample(); }
   void deleteData(void* data) override { delete static_cast<SerializedSample*>(data); }
   bool getKey(void* data, ertps::InstanceHandle_t* key, bool force_md5) override {
-    return key_of_bytes(real_, *static_cast<const SerializedSample*>(data), *key, force_md5);
+    return !real_ ||
+           key_of_bytes(real_, *static_cast<const SerializedSample*>(data), *key, force_md5);
   }
 
  private:

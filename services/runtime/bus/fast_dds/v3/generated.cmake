@@ -23,3 +23,10 @@ macro(fast_dds_outputs subject)
   string(TOUPPER ${subject} guard)
   list(APPEND fast_dds_bus_definitions FAST_DDS_GENERATED__STILLHAND_MSGS_${guard}CDRAUX_IPP)
 endmacro()
+# The same for a type that discovery describes, and `tests/<subject>_described.hpp`.
+macro(fast_dds_described subject)
+  set(described ${generated}/${subject}PubSubTypes.cxx ${generated}/${subject}TypeObjectSupport.cxx)
+  set(described_words)
+  file(CONFIGURE OUTPUT ${generated}/tests/${subject}_described.hpp
+       CONTENT "#include \"${subject}PubSubTypes.hpp\"\ninline void describe() {}\n")
+endmacro()

@@ -4,6 +4,7 @@
 
 #include <fastdds/dds/core/ReturnCode.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/rtps/attributes/RTPSParticipantAttributes.hpp>
 #include <fastdds/rtps/common/InstanceHandle.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
@@ -21,5 +22,10 @@ bool ok(bool) = delete;
 inline edds::Duration_t& heartbeat_period(edds::DataWriterQos& qos) {
   return qos.reliable_writer_qos().times.heartbeat_period;
 }
+
+/// It announces its DATA_REPRESENTATION.
+inline constexpr bool kHasXcdr2 = true;
+
+inline auto& representation(edds::DataReaderQos& qos) { return qos.representation(); }
 
 }  // namespace stillhand::runtime

@@ -50,13 +50,21 @@ struct SharedType final : Generated {
 };
 
 /// Stands in for a real type and keeps each sample's bytes.  Matches the other ends of the real
-/// type, since name and key agree.
+/// type, since name and key agree.  Of a type of which only the name is known, no key is computed:
+/// a sample that comes without a hash of its key counts as the one instance; one that goes out has
+/// none.
 class SerializedType final : public edds::TopicDataType {
  public:
   explicit SerializedType(edds::TypeSupport real) : real_(std::move(real)) {
     set_name(real_->get_name());
     max_serialized_type_size = real_->max_serialized_type_size;
     is_compute_key_provided = real_->is_compute_key_provided;
+  }
+  SerializedType(const std::string& name, bool keyed) {
+    constexpr std::uint32_t kFirstBytes = 256;  // Fast DDS reserves more when a sample needs it
+    set_name(name);
+    max_serialized_type_size = kFirstBytes;
+    is_compute_key_provided = keyed;
   }
   bool serialize(const void* data, ertps::SerializedPayload_t& payload,
                  edds::DataRepresentationId_t /*plain*/) override {
@@ -74,11 +82,12 @@ class SerializedType final : public edds::TopicDataType {
   void* create_data() override { return new SerializedSample(); }
   void delete_data(void* data) override { delete static_cast<SerializedSample*>(data); }
   bool compute_key(const void* data, ertps::InstanceHandle_t& key, bool force_md5) override {
-    return key_of_bytes(real_, *static_cast<const SerializedSample*>(data), key, force_md5);
+    return !real_ ||
+           key_of_bytes(real_, *static_cast<const SerializedSample*>(data), key, force_md5);
   }
   bool compute_key(ertps::SerializedPayload_t& payload, ertps::InstanceHandle_t& key,
                    bool force_md5) override {
-    return key_of_bytes(real_, bytes_of(payload), key, force_md5);
+    return !real_ || key_of_bytes(real_, bytes_of(payload), key, force_md5);
   }
 
  private:
