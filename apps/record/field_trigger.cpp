@@ -22,12 +22,17 @@ double number_of(const recording::Cell& cell) {
   return std::nan("");
 }
 
+const recording::IdlStruct& defined(const recording::IdlSchema& schema, const std::string& type) {
+  const recording::IdlStruct* found = schema.find(type);
+  if (found == nullptr) throw ConfigError(type, "no definition", "IDL that defines it");
+  return *found;
+}
+
 }  // namespace
 
 struct FieldTrigger::Decoder {
-  explicit Decoder(const std::string& type)
-      : schema(recording::parse_idl(topics::idl_of(type), "idl")),
-        columns(schema, *schema.find(type)) {
+  Decoder(const std::string& type, std::string_view idl)
+      : schema(recording::parse_idl(idl, type)), columns(schema, defined(schema, type)) {
     columns.settle();
   }
   recording::IdlSchema schema;
@@ -60,13 +65,14 @@ FieldTrigger::FieldTrigger(const std::string& text) : text_(text) {
   }
   // A topic of the catalogue is checked now; another one at its first sample, which gives the type.
   const topics::Topic* row = topics::find(topic_);
-  if (row != nullptr && !prepare(std::string(row->type))) {
+  if (row != nullptr && !prepare(std::string(row->type), topics::idl_of(row->type))) {
     throw ConfigError("--trigger", text, "a number that " + std::string(row->type) + " has");
   }
 }
 
-bool FieldTrigger::prepare(const std::string& type) {
-  decoder_ = std::make_shared<Decoder>(type);
+bool FieldTrigger::prepare(const std::string& type, std::string_view idl) {
+  prepared_ = true;
+  decoder_ = std::make_shared<Decoder>(type, idl);
   const auto& columns = decoder_->columns.columns();
   const auto found = std::ranges::find(columns, field_, &recording::MessageColumn::name);
   if (found == columns.end() || found->kind == recording::CellKind::kText) return false;
@@ -76,8 +82,13 @@ bool FieldTrigger::prepare(const std::string& type) {
 
 bool FieldTrigger::step(const runtime::FoundWriter& writer, const runtime::TappedSample& sample) {
   if (writer.topic != topic_) return false;
-  if (!decoder_) prepare(writer.type);
-  if (!decoder_->column || !decoder_->columns.read(sample.bytes, decoder_->row)) return false;
+  try {
+    if (!prepared_) prepare(writer.type, writer.idl);
+  } catch (const ConfigError&) {
+    return false;  // a type that is not known has no such number either
+  }
+  if (!decoder_ || !decoder_->column || !decoder_->columns.read(sample.bytes, decoder_->row))
+    return false;
   return step(number_of(decoder_->row[*decoder_->column]));
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/recording/core/messages/message_columns.hpp"
@@ -29,14 +30,16 @@ class FieldTrigger {
 
  private:
   struct Decoder;
-  bool prepare(const std::string& type);
+  bool prepare(const std::string& type, std::string_view idl);
 
   std::string text_, topic_, field_;
   bool magnitude_ = false;
   bool above_ = true;
   double threshold_ = 0.0;
   bool beyond_ = false;
-  std::shared_ptr<Decoder> decoder_;  // shared: triggers are copied while they are being listed
+  bool prepared_ = false;
+  std::shared_ptr<Decoder> decoder_;  // none: the type is not known; shared: triggers are copied
+                                      // while they are being listed
 };
 
 }  // namespace stillhand::record

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -16,6 +17,8 @@
 #include "idl/session.h"
 #include "idl/topics.hpp"
 #include "services/recording/bus_recording.hpp"
+#include "services/recording/core/messages/omgidl.hpp"
+#include "services/recording/file_io.hpp"
 #include "services/recording/session_texts.hpp"
 #include "services/runtime/bus/identity.hpp"
 #include "services/runtime/bus/tap.hpp"
@@ -40,6 +43,28 @@ std::vector<FieldTrigger> triggers_of(const RecordOptions& options) {
   return triggers;
 }
 
+/// The types of IDL files that the command line names.
+class DefinedTypes {
+ public:
+  /// @throws ConfigError for a file that cannot be read or is no IDL
+  explicit DefinedTypes(const std::vector<std::filesystem::path>& files) {
+    for (const auto& file : files) {
+      std::string text = recording::read_file(file.string());
+      recording::IdlSchema types = recording::parse_idl(text, file.string());
+      files_.emplace_back(std::move(text), std::move(types));
+    }
+  }
+  /// Text of the file that defines a type, or "".
+  [[nodiscard]] std::string text_of(const std::string& type) const {
+    const auto found = std::ranges::find_if(
+        files_, [&type](const auto& file) { return file.second.find(type) != nullptr; });
+    return found == files_.end() ? "" : found->first;
+  }
+
+ private:
+  std::vector<std::pair<std::string, recording::IdlSchema>> files_;
+};
+
 recording::TapeOptions tape_options(const RecordOptions& options) {
   recording::TapeOptions tape = options.tape;
   tape.session = recording::session_texts(options.domain, "stillhand record");
@@ -60,6 +85,7 @@ class Run {
       : options_(options),
         stop_(stop),
         triggers_(triggers_of(options)),
+        defined_(options.idl),
         required_(options.required),
         tap_(tap_options()),
         remote_(outsider("record", options), topics::kRecorderCommand, topics::kRecorderStatus) {
@@ -83,6 +109,8 @@ class Run {
  private:
   runtime::Tap::Options tap_options() {
     runtime::Tap::Options tap;
+    tap.any_type = true;
+    tap.idl_of = [this](const std::string& type) { return defined_.text_of(type); };
     tap.name = "stillhand-record/" + std::to_string(getpid());
     tap.domain = options_.domain;
     tap.profiles = options_.profiles;
@@ -164,6 +192,7 @@ class Run {
   const RecordOptions& options_;
   runtime::Stop& stop_;
   std::vector<FieldTrigger> triggers_;
+  DefinedTypes defined_;
   RequiredTopics required_;
   std::mutex seen_;
   bool some_wanted_ = false;        ///< of the topics on the bus

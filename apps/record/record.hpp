@@ -18,6 +18,8 @@ struct RecordOptions {
   recording::TopicFilter topics;
   std::vector<std::string> required;  ///< topics without which a trial is not worth starting
   bool trigger_on_deadline = false;   ///< a missed deadline writes the event window
+  std::vector<std::filesystem::path>
+      idl;                            ///< definitions of types that discovery does not describe
   std::vector<std::string> triggers;  ///< conditions that write it, as FieldTrigger reads them
   std::optional<std::int64_t> duration_ns;  ///< [ns] nothing: until a signal
   std::uint32_t domain = 0;

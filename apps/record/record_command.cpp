@@ -66,9 +66,10 @@ void add_record_command(CLI::App& cli, int& status) {
   CLI::App* verb = cli.add_subcommand(
       "record",
       "Records a running bus into an MCAP file. The verb is outside of every session: no\n"
-      "session waits for it or ends with it. It records every topic whose type it knows, unless\n"
+      "session waits for it or ends with it. It records every topic of any DDS program, unless\n"
       "patterns select fewer; in a pattern * stands for any run of characters and ? for one\n"
-      "character. It ends with Ctrl-C or after --duration, and prints for each topic how many\n"
+      "character. A type that neither the bus nor --idl describes is recorded as bytes. It ends "
+      "with Ctrl-C or after --duration, and prints for each topic how many\n"
       "messages it received, lost and wrote. Exit status 1 when a message was lost.\n"
       "Example: stillhand record --out run.mcap --topics 'stillhand/*' --block '*status'");
   verb->add_option("--out", arguments->out, "MCAP file to write; it must not exist yet");
@@ -80,6 +81,8 @@ void add_record_command(CLI::App& cli, int& status) {
       "--require", options.required,
       "required topic: a warning in red when it is silent before a trial starts, and exit "
       "status 1 when it is silent at the end; may be repeated"));
+  settings::repeatable(verb->add_option(
+      "--idl", options.idl, "IDL file with types that the bus does not describe; may be repeated"));
   verb->add_option("--duration", arguments->duration_s, "end after this time [s]")
       ->check(recording::within(0.001, kMostSeconds));
   verb->add_option("--rotate-s", arguments->rotate_s, "continue in a new file after this time [s]")

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 
+#include "idl/topics.hpp"
 #include "services/runtime/process/clock.hpp"
 
 namespace stillhand::record {
@@ -25,7 +26,10 @@ Totals print_topics(const std::map<std::string, recording::TopicTally>& topics) 
   for (const auto& [topic, tally] : topics) {
     fmt::print("{:<32} {:>12} {:>10} {:>10} {:>12}{}\n", topic, tally.received, tally.lost,
                tally.not_sent, tally.written,
-               tally.type_known ? "" : "  type not known: not recorded");
+               tally.type_known ? ""
+               : topics::find(topic) != nullptr
+                   ? "  another type than the catalogue's: not recorded"
+                   : "  type not known: recorded as bytes");
     totals.received += tally.received;
     totals.lost += tally.lost;
   }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <map>
 
 #include "apps/replay/keyboard.hpp"
 #include "apps/replay/player.hpp"
@@ -72,6 +74,19 @@ void wait_for_discovery(const RoutePlan& plan, const runtime::Playback& playback
     known = found;
     runtime::sleep_until_ns(now_ns + kMatchPoll_ns);
   }
+}
+
+/// "" while nobody else writes a foreign topic that is played.  Its readers know no mark of a
+/// replay: with another writer, a device would have two masters.
+std::string second_writer(const RoutePlan& plan, const runtime::Playback& playback) {
+  const std::map<std::string, std::string> others = playback.other_writers();
+  for (const auto& [id, route] : plan.routes) {
+    const auto other = others.find(route.topic);
+    if (route.foreign && other != others.end()) {
+      return fmt::format("{}, which {} writes", route.topic, other->second);
+    }
+  }
+  return "";
 }
 
 void execute(Key key, Player& player, bool& quit) {
@@ -156,14 +171,17 @@ void check_wait_for(const ReplayOptions& options, const RoutePlan& plan) {
   }
 }
 
-/// Plays until the end, a command, a key or a signal.
-void play(const ReplayOptions& options, const PlaySpan& span, const Played& played, Player& player,
-          Remote& remote, const runtime::Stop& stop) {
+/// Plays until the end, a command, a key or a signal, and while `obstacle` is "".
+/// @returns the obstacle
+std::string play(const ReplayOptions& options, const PlaySpan& span, const Played& played,
+                 Player& player, Remote& remote, const runtime::Stop& stop,
+                 const std::function<std::string()>& obstacle) {
   Keyboard keyboard(options.keyboard);
   player.begin(options.begin_paused);
   std::int64_t printed_ns = 0;
   std::int64_t status_ns = 0;
-  for (bool quit = false; !quit && !stop.requested();) {
+  std::string met;
+  for (bool quit = false; !quit && !stop.requested() && met.empty();) {
     const std::optional<std::int64_t> idle_ns = player.step();
     if (!idle_ns) break;
     if (const auto key = keyboard.wait(std::max<std::int64_t>(*idle_ns, 0))) {
@@ -179,9 +197,11 @@ void play(const ReplayOptions& options, const PlaySpan& span, const Played& play
         now_ns - status_ns >= kStatusInterval_ns) {
       status_ns = now_ns;
       publish_status(remote, player, played);
+      met = obstacle();
     }
   }
   if (remote.asked()) publish_last_status(remote, player, played);
+  return met;
 }
 
 void print_end(const Player& player, std::size_t channels, std::uint64_t unheard) {
@@ -217,6 +237,9 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
                 topics::kReplayCommand, topics::kReplayStatus);
   wait_for_readers(options, plan, playback, stop);
   wait_for_discovery(plan, playback, stop);
+  if (const std::string two = second_writer(plan, playback); !two.empty()) {
+    throw ConfigError("topic", two, "one that is written by nobody else, --remap or --block");
+  }
 
   std::uint64_t refused = 0;
   std::uint64_t unheard = 0;
@@ -228,8 +251,9 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
                   if (playback.matched(writer) == 0) ++unheard;
                   if (!playback.write(writer, bytes)) ++refused;
                 });
-  play(options, span, {options.file, totals.start_time_ns, totals.end_time_ns}, player, remote,
-       stop);
+  const std::string obstacle =
+      play(options, span, {options.file, totals.start_time_ns, totals.end_time_ns}, player, remote,
+           stop, [&] { return second_writer(plan, playback); });
   if (isatty(STDERR_FILENO) == 1) fmt::print(stderr, "\r\033[K");
   playback.wait_for_acknowledgments(kAcknowledge_ns);
   print_end(player, plan.routes.size(), unheard);
@@ -238,8 +262,9 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
   const std::string loss =
       recording::loss_line(options.file, damage, std::nullopt, file.being_written());
   if (!loss.empty()) runtime::remark(loss);
+  if (!obstacle.empty()) runtime::remark("stopped: a second writer of " + obstacle);
   if (refused > 0) runtime::remark(fmt::format("Fast DDS refused {} messages", refused));
-  return recording::lost_bytes(damage) == 0 && refused == 0 ? 0 : 1;
+  return recording::lost_bytes(damage) == 0 && refused == 0 && obstacle.empty() ? 0 : 1;
 }
 
 }  // namespace stillhand::replay

@@ -25,15 +25,24 @@ std::string mapped(const ReplayOptions& options, const std::string& topic) {
 }
 
 /// @returns why a channel cannot be played, or ""
-std::string refusal(const Channel& channel, const recording::McapReader& reader) {
+/// @param topic  as written
+std::string refusal(const Channel& channel, const std::string& topic,
+                    const recording::McapReader& reader) {
   if (channel.message_encoding != recording::kMessageEncoding) {
     return fmt::format("its message encoding is \"{}\", not CDR", channel.message_encoding);
   }
   const auto schema = reader.schemas().find(channel.schema_id);
   if (schema == reader.schemas().end()) return "its type is not in the file";
   const std::string& type = schema->second.name;
-  if (!runtime::Playback::knows(type))
-    return fmt::format("its type {} is unknown to this program", type);
+  if (!runtime::Playback::knows(type)) {
+    // Bytes go out as they came if the recording has what their writer offered, but not to the
+    // session's processes.
+    const auto qos = recording::qos_of(channel.metadata);
+    if (!qos || topics::find(topic) != nullptr) {
+      return fmt::format("its type {} is unknown to this program", type);
+    }
+    return runtime::Playback::offers(*qos) ? "" : "its messages are XCDR 2, for Fast DDS 3 alone";
+  }
   const std::string_view text(reinterpret_cast<const char*>(schema->second.bytes.data()),
                               schema->second.bytes.size());
   const std::string_view ours = topics::idl_of(type);
@@ -94,14 +103,15 @@ RoutePlan plan_routes(const ReplayOptions& options, const recording::McapReader&
   std::set<std::string> refused;  // once for all writers of a topic
   for (const auto& [id, channel] : reader.channels()) {
     if (!options.topics.wants(channel.topic)) continue;
-    if (const std::string why = refusal(channel, reader); !why.empty()) {
+    const std::string topic = mapped(options, channel.topic);
+    if (const std::string why = refusal(channel, topic, reader); !why.empty()) {
       refused.insert(channel.topic + ": " + why);
       continue;
     }
     const runtime::WriterQos qos = qos_for(channel, playback);
-    const std::string topic = mapped(options, channel.topic);
-    plan.routes[id] = {
-        topic, playback.add_writer(topic, reader.schemas().at(channel.schema_id).name, qos)};
+    const std::string& type = reader.schemas().at(channel.schema_id).name;
+    plan.routes[id] = {topic, playback.add_writer(topic, type, qos),
+                       !runtime::Playback::knows(type)};
     plan.wanted.push_back(id);
     if (is_latched(qos)) plan.latched.push_back(id);
   }

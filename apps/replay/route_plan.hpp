@@ -16,6 +16,7 @@ namespace stillhand::replay {
 struct Route {
   std::string topic;   ///< as written
   std::size_t writer;  ///< of the playback
+  bool foreign;        ///< idl/ does not define its type: its readers do not know a replay's mark
 };
 
 /// The channels that are played, and their writers.

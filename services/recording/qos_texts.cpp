@@ -48,6 +48,8 @@ TextMap qos_texts(const runtime::WriterQos& qos) {
   texts["qos.lifespan_ns"] = text_of(qos.lifespan_ns);
   texts["qos.history"] = qos.depth > 0 ? "keep_last" : qos.depth < 0 ? "keep_all" : "unknown";
   if (qos.depth > 0) texts["qos.depth"] = std::to_string(qos.depth);
+  if (qos.xcdr2) texts["qos.representation"] = "xcdr2";
+  if (qos.keyed) texts["keyed"] = "true";
   return texts;
 }
 
@@ -66,6 +68,8 @@ std::optional<runtime::WriterQos> qos_of(const TextMap& texts) {
   qos.deadline_ns = number_of(text("qos.deadline_ns"), kForever_ns);
   qos.lifespan_ns = number_of(text("qos.lifespan_ns"), kForever_ns);
   qos.depth = text("qos.history") == "keep_all" ? -1 : number_of(text("qos.depth"), 0);
+  qos.xcdr2 = text("qos.representation") == "xcdr2";
+  qos.keyed = text("keyed") == "true";
   return qos;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
 #include "services/recording/qos_texts.hpp"
 #include "services/recording/sample_clock.hpp"
@@ -31,6 +30,7 @@ Channel channel_of(const FoundWriter& writer) {
   channel.metadata["participant"] = writer.participant;
   if (!writer.profile.empty()) channel.metadata["qos_profile"] = writer.profile;
   if (writer.replayed) channel.metadata["replayed"] = "true";
+  if (!writer.user_data.empty()) channel.metadata["user_data"] = writer.user_data;
   return channel;
 }
 
@@ -43,12 +43,18 @@ void Tally::take(const FoundWriter& writer, const TappedSample& sample) {
     Source source;
     source.topic = writer.topic;
     source.has_ticks = counts_ticks(writer.type);
-    source.channel =
-        tape_->add_channel(channel_of(writer), writer.type, topics::idl_of(writer.type));
+    source.channel = tape_->add_channel(channel_of(writer), writer.type, writer.idl);
     known = sources_.emplace(sample.writer, std::move(source)).first;
   }
   Source& source = known->second;
   source.count.step(sample.sequence, source.has_ticks ? sample_head(sample.bytes).tick : -1);
+  // Of a sample that was lost the time is not known.
+  if (source.count.received() > 1 && sample.sequence == source.sequence + 1 &&
+      sample.source_ns - source.sent_ns > writer.qos.deadline_ns) {
+    ++source.late;
+  }
+  source.sequence = sample.sequence;
+  source.sent_ns = sample.source_ns;
   // MCAP has 32 bits for the sequence; a gap remains visible.
   tape_->put(source.channel, static_cast<std::uint32_t>(sample.sequence), sample.logged_ns,
              sample.source_ns, sample.received_ns, sample.bytes);
@@ -61,7 +67,7 @@ std::map<std::string, TopicTally> Tally::topics(const std::vector<FoundWriter>& 
     if (!writer.wanted) continue;
     TopicTally& tally = all[writer.topic];
     ++tally.writers;
-    tally.type_known = tally.type_known && writer.type_known;
+    tally.type_known = tally.type_known && !writer.idl.empty();
   }
   const std::lock_guard lock(mutex_);
   for (const auto& [number, source] : sources_) {
@@ -69,6 +75,7 @@ std::map<std::string, TopicTally> Tally::topics(const std::vector<FoundWriter>& 
     tally.received += static_cast<std::uint64_t>(source.count.received());
     tally.lost += static_cast<std::uint64_t>(source.count.lost());
     tally.not_sent += static_cast<std::uint64_t>(source.count.not_sent());
+    tally.late += source.late;
     if (source.channel < written.size()) tally.written += written[source.channel];
   }
   return all;
@@ -87,6 +94,7 @@ TextMap Tally::texts() const {
     texts[topic + " received"] = std::to_string(tally.received);
     texts[topic + " lost"] = std::to_string(tally.lost);
     texts[topic + " not_sent"] = std::to_string(tally.not_sent);
+    texts[topic + " late"] = std::to_string(tally.late);
     texts[topic + " written"] = std::to_string(tally.written);
   }
   return texts;

@@ -18,7 +18,8 @@ namespace stillhand::recording {
 /// One topic of a recording, all its writers together.
 struct TopicTally {
   std::uint64_t writers = 0, received = 0, lost = 0, not_sent = 0, written = 0;
-  bool type_known = true;
+  std::uint64_t late = 0;  ///< sent later after the one before than the writer's offered deadline
+  bool type_known = true;  ///< its definition is
 };
 
 /// Passes samples from the bus to the tape: makes a channel for each writer at its first sample and
@@ -44,6 +45,8 @@ class Tally {
     std::uint32_t channel = 0;
     bool has_ticks = false;
     LossCount count;
+    std::uint64_t late = 0;
+    std::int64_t sequence = 0, sent_ns = 0;  // of the newest sample
   };
 
   Tape* tape_;

@@ -45,16 +45,17 @@ struct Tape::Part {
         writer(file, options.writer) {}
 
   ChannelId define(std::uint32_t channel, const Definition& wanted) {
-    SchemaId schema = 0;
-    if (!wanted.schema_text.empty()) {
-      const auto [place, fresh] = schemas.try_emplace(wanted.schema_name, SchemaId{0});
-      if (fresh) {
-        place->second = writer.add_schema(wanted.schema_name, kSchemaEncoding, wanted.schema_text);
-      }
-      schema = place->second;
+    // Two programs may define one name differently.
+    const auto [schema, fresh] =
+        schemas.try_emplace({wanted.schema_name, wanted.schema_text}, SchemaId{0});
+    if (fresh) {
+      schema->second =
+          writer.add_schema(wanted.schema_name, wanted.schema_text.empty() ? "" : kSchemaEncoding,
+                            wanted.schema_text);
     }
-    const ChannelId id = writer.add_channel(
-        wanted.channel.topic, schema, wanted.channel.message_encoding, wanted.channel.metadata);
+    const ChannelId id =
+        writer.add_channel(wanted.channel.topic, schema->second, wanted.channel.message_encoding,
+                           wanted.channel.metadata);
     ids.emplace(channel, id);
     return id;
   }
@@ -63,7 +64,7 @@ struct Tape::Part {
   FileSink file;
   McapWriter writer;
   std::map<std::uint32_t, ChannelId> ids;
-  std::map<std::string, SchemaId> schemas;
+  std::map<std::pair<std::string, std::string_view>, SchemaId> schemas;  // by name and text
   std::optional<std::int64_t> first_ns;  // of the first message, as received
 };
 
@@ -88,7 +89,8 @@ Tape::~Tape() { static_cast<void>(close()); }
 std::uint32_t Tape::add_channel(Channel channel, std::string schema_name,
                                 std::string_view schema_text) {
   const std::lock_guard lock(mutex_);
-  definitions_.push_back({std::move(channel), std::move(schema_name), schema_text});
+  const std::string_view kept = *schema_texts_.emplace(schema_text).first;
+  definitions_.push_back({std::move(channel), std::move(schema_name), kept});
   written_.push_back(0);
   return static_cast<std::uint32_t>(definitions_.size() - 1);
 }
@@ -99,7 +101,7 @@ void Tape::put(std::uint32_t channel, std::uint32_t sequence, std::int64_t log_t
   bool much = false;
   {
     const std::lock_guard lock(mutex_);
-    if (stopped_.load(std::memory_order_relaxed) ||
+    if (stopped_.load(std::memory_order_relaxed) || bytes.size() > McapWriter::kMaxMessageBytes ||
         filling_.bytes.size() + bytes.size() > options_.max_queued_bytes) {
       ++status_.dropped;
       return;

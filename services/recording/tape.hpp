@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <thread>
@@ -66,9 +67,11 @@ class Tape {
   Tape(const Tape&) = delete;
   Tape& operator=(const Tape&) = delete;
 
-  /// Adds a topic of one writer; any thread.  @returns its number
+  /// Adds a topic of one writer; any thread.  @param schema_text  IDL, or "" if the type is not
+  /// known by more than its name  @returns its number
   std::uint32_t add_channel(Channel channel, std::string schema_name, std::string_view schema_text);
-  /// Copies one message into the queue; any thread; does not wait for the disk.
+  /// Copies one message into the queue; any thread; does not wait for the disk.  One that a file
+  /// cannot hold (McapWriter::kMaxMessageBytes) is dropped and counted.
   void put(std::uint32_t channel, std::uint32_t sequence, std::int64_t log_time_ns,
            std::int64_t publish_time_ns, std::int64_t received_ns,
            std::span<const std::byte> bytes);
@@ -118,6 +121,7 @@ class Tape {
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   MessageBatch filling_;
+  std::set<std::string, std::less<>> schema_texts_;  // each once
   std::vector<Definition> definitions_;
   std::vector<std::uint64_t> written_;
   std::vector<std::string> triggers_;

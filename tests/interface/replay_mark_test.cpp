@@ -169,6 +169,7 @@ TEST_F(ReplayMarkTest, BytesThatAreNoMessageAreRefusedOrPassedOnAndHarmNobody) {
 TEST_F(ReplayMarkTest, ATapHearsAReplayWithItsMarkBytesAndQos) {
   WriterQos offered = stream_qos(replay);
   offered.depth = 0;  // does not travel
+  offered.keyed = true;
   const std::size_t writer =
       replay.add_writer("another/topic", "stillhand_msgs::MotorCommand", offered);
   std::mutex mutex;

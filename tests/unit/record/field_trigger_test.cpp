@@ -7,6 +7,7 @@
 
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
+#include "idl/idl_text.hpp"
 #include "services/contract/config_error.hpp"
 
 namespace stillhand::record {
@@ -52,6 +53,7 @@ bool step(FieldTrigger& sut, const std::string& topic, const std::string& type,
   runtime::FoundWriter writer;
   writer.topic = topic;
   writer.type = type;
+  writer.idl = topics::idl_of(type);
   return sut.step(writer, {0, 1, 0, 0, 0, bytes});
 }
 
@@ -92,6 +94,22 @@ TEST(FieldTriggerTest, AFieldThatTheFirstSamplesTypeLacksNeverFires) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_FALSE(step(sut, "bench/motor", "stillhand_msgs::MotorCommand", message)) << i;
   }
+}
+
+TEST(FieldTriggerTest, AForeignTopicIsReadByItsOwnDefinitionAndWithoutOneItNeverFires) {
+  runtime::FoundWriter writer;
+  writer.topic = "tank/level";
+  writer.type = "tank::Level";
+  const std::vector<std::byte> bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0},
+                                     std::byte{9}, std::byte{0}, std::byte{0}, std::byte{0}};
+  for (const std::string_view unknown : {"", "struct {{{", "struct Level { long other; };"}) {
+    FieldTrigger sut("tank/level.height_mm>5");
+    writer.idl = unknown;
+    EXPECT_FALSE(sut.step(writer, {0, 1, 0, 0, 0, bytes})) << unknown;
+  }
+  FieldTrigger sut("tank/level.height_mm>5");
+  writer.idl = "module tank { struct Level { long height_mm; }; };";
+  EXPECT_TRUE(sut.step(writer, {0, 1, 0, 0, 0, bytes}));
 }
 
 TEST(FieldTriggerTest, ACopyTriggersOnItsOwn) {

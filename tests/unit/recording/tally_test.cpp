@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
 #include "services/recording/sample_clock.hpp"
@@ -27,7 +28,7 @@ FoundWriter writer_of(const topics::Topic& topic, const std::string& id) {
   writer.type = topic.type;
   writer.id = id;
   writer.participant = "stillhand/1/" + id;
-  writer.type_known = true;
+  writer.idl = topics::idl_of(topic.type);
   return writer;
 }
 
@@ -98,7 +99,7 @@ TEST_F(TallyTest, EachWriterHasItsOwnCountsAndItsTopicHasTheirSum) {
 
 TEST_F(TallyTest, AWantedWriterWithoutSamplesHasZerosAndAnUnwantedOneIsLeftOut) {
   FoundWriter silent = writer_of(topics::kEvent, "silent");
-  silent.type_known = false;
+  silent.idl = {};
   FoundWriter unwanted = writer_of(topics::kRigTruth, "unwanted");
   unwanted.wanted = false;
   const auto topics = sut_->topics({silent, unwanted});
@@ -130,8 +131,22 @@ TEST_F(TallyTest, TheTextsHaveTheCountsOfEachTopic) {
   ASSERT_TRUE(tape_->close().ok());
   EXPECT_THAT(
       sut_->texts(),
-      ElementsAre(Pair("stillhand/sensed lost", "2"), Pair("stillhand/sensed not_sent", "0"),
-                  Pair("stillhand/sensed received", "2"), Pair("stillhand/sensed written", "2")));
+      ElementsAre(Pair("stillhand/sensed late", "0"), Pair("stillhand/sensed lost", "2"),
+                  Pair("stillhand/sensed not_sent", "0"), Pair("stillhand/sensed received", "2"),
+                  Pair("stillhand/sensed written", "2")));
+}
+
+// 5 ns are offered. The sample before that at 30 ns was lost, so nobody knows when it was sent.
+TEST_F(TallyTest, ASampleLaterThanTheOfferedDeadlineAfterTheOneBeforeIsLate) {
+  FoundWriter writer = writer_of(topics::kEvent, "rig");
+  writer.qos.deadline_ns = 5;
+  struct Sent {
+    std::int64_t sequence, at_ns;
+  };
+  for (const auto& [sequence, at_ns] : {Sent{1, 10}, {2, 15}, {3, 21}, {5, 30}, {6, 35}, {7, 99}}) {
+    sut_->take(writer, {0, sequence, at_ns, at_ns, at_ns, sensed(1)});
+  }
+  EXPECT_EQ(sut_->topics({}).at("stillhand/event").late, 2u);
 }
 
 TEST_F(TallyTest, TheChannelOfAWriterStatesItsOrigin) {

@@ -250,6 +250,35 @@ TEST_F(TapeTest, WhatDoesNotFitTheQueueIsDroppedAndCounted) {
   EXPECT_EQ(sut.status().written + sut.status().dropped, 10'000u);
 }
 
+TEST_F(TapeTest, AMessageThatAFileCannotHoldIsDroppedAndCountedAndTheTapeGoesOn) {
+  Tape sut(options());
+  const std::uint32_t a = channel(sut);
+  sut.put(a, 0, 1, 1, 1, std::vector<std::byte>(McapWriter::kMaxMessageBytes + 1));
+  sut.put(a, 1, 2, 2, 2, std::vector<std::byte>(4));
+  ASSERT_TRUE(sut.close().ok());
+  EXPECT_EQ(sut.status().dropped, 1u);
+  EXPECT_THAT(sequences(options().path), testing::ElementsAre(1u));
+}
+
+TEST_F(TapeTest, OneNameWithTwoDefinitionsAndOneWithoutAreThreeSchemas) {
+  Tape sut(options());
+  std::vector<std::uint32_t> channels;
+  for (const std::string text : {"struct T { long x; };", "struct T { long y; };", ""}) {
+    channels.push_back(sut.add_channel({}, "T", text));
+  }
+  for (const std::uint32_t each : channels) sut.put(each, 1, 1, 1, 1, std::vector<std::byte>(4));
+  ASSERT_TRUE(sut.close().ok());
+  FileSource file(options().path);
+  const McapReader reader(file);
+  std::vector<std::string> found;
+  for (const auto& [id, channel] : reader.channels()) {
+    const Schema& schema = reader.schemas().at(channel.schema_id);
+    EXPECT_EQ(schema.name, "T");
+    found.push_back(schema.encoding + " " + std::to_string(schema.bytes.size()));
+  }
+  EXPECT_THAT(found, testing::ElementsAre("omgidl 21", "omgidl 21", " 0"));
+}
+
 TEST_F(TapeTest, ADiskThatIsTooFullIsRefusedBeforeTheRun) {
   auto full = options();
   full.min_free_bytes = UINT64_MAX;
@@ -279,6 +308,8 @@ TEST(QosTextsTest, EveryPolicyComesBackFromItsText) {
   qos.deadline_ns = 5'500'000;
   qos.lifespan_ns = 20'000'000;
   qos.lease_ns = 300'000'000;
+  qos.xcdr2 = true;
+  qos.keyed = true;
   for (const std::int32_t depth : {16, 0, -1}) {
     qos.depth = depth;
     EXPECT_EQ(qos_of(qos_texts(qos)), qos);

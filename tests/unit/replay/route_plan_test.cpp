@@ -127,7 +127,7 @@ TEST_F(RoutePlanTest, TheRecordedQosCountsBeforeTheCatalogue) {
 
 TEST_F(RoutePlanTest, AChannelThatCannotBePlayedLeavesTheOthers) {
   channel("json", "stillhand_msgs::Sensed", {}, "json");
-  channel("stranger", "other::Type", {}, "cdr", "struct Type { long x; };");
+  channel("stranger", "other::Type", {}, "cdr", "struct Type { long x; };");  // without its QoS
   const ChannelId sensed = channel("stillhand/sensed", "stillhand_msgs::Sensed");
   testing::internal::CaptureStderr();
   const RoutePlan sut = plan();
@@ -135,6 +135,22 @@ TEST_F(RoutePlanTest, AChannelThatCannotBePlayedLeavesTheOthers) {
   EXPECT_THAT(sut.wanted, ElementsAre(sensed));
   EXPECT_THAT(printed, AllOf(HasSubstr("json: "), HasSubstr("\"json\""), HasSubstr("CDR"),
                              HasSubstr("stranger: "), HasSubstr("other::Type")));
+}
+
+TEST_F(RoutePlanTest, AForeignTypeIsPlayedAsBytesButUnderNoNameOfTheCatalogue) {
+  const TextMap qos = recording::qos_texts(runtime::WriterQos{});
+  const ChannelId known = channel("plant/state", "plant::State", qos, "cdr", "not even IDL");
+  const ChannelId sensed = channel("stillhand/sensed", "stillhand_msgs::Sensed");
+  channel("stillhand/motor_command", "plant::State", qos, "cdr", "");
+  channel("plant/push", "plant::State", qos, "cdr", "");
+  options_.remap = {{"plant/push", "stillhand/motor_command"}};
+  testing::internal::CaptureStderr();
+  const RoutePlan sut = plan();
+  const std::string printed = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(sut.wanted, ElementsAre(known, sensed));
+  EXPECT_TRUE(sut.routes.at(known).foreign);
+  EXPECT_FALSE(sut.routes.at(sensed).foreign);
+  EXPECT_THAT(printed, AllOf(HasSubstr("stillhand/motor_command: "), HasSubstr("plant/push: ")));
 }
 
 TEST_F(RoutePlanTest, AnotherDefinitionOfATypeIsRefusedWithTheDifference) {

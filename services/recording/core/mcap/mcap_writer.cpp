@@ -11,7 +11,6 @@ namespace stillhand::recording {
 namespace {
 
 // A message index counts its bytes in 32 bits; this limit keeps a chunk of one message far below.
-constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 20;
 
 }  // namespace
 

@@ -33,6 +33,7 @@ struct McapWriterOptions {
 class McapWriter {
  public:
   static constexpr std::size_t kMaxIds = 65535;  ///< of schemas, and of channels
+  static constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 20;  ///< [B]
 
   /// Writes magic and header; status() and every later call return a failure.
   explicit McapWriter(ByteSink& sink, McapWriterOptions options = {});

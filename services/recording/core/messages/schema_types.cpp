@@ -14,6 +14,9 @@ IdlSchema parse_schema(const Schema& schema, const std::string& source) {
     types = parse_idl(text, source);
   } else if (schema.encoding == kRos2SchemaEncoding) {
     types = parse_ros2msg(text, schema.name, source);
+  } else if (schema.encoding.empty()) {
+    throw ConfigError(source, "no definition of " + schema.name,
+                      "a recording that has it (stillhand record --idl)");
   } else {
     throw ConfigError(source, "a schema in '" + schema.encoding + "'",
                       "a schema in 'omgidl' or 'ros2msg'");
