@@ -25,7 +25,7 @@ constexpr double kLeastHandRate_hz = 5.0;
 
 // A table whose 't [ms]' holds seconds looks like a fast one that ends within a blink.  At 10 Hz,
 // the fastest that a hand moves, a second holds ten periods; fewer show no response.
-constexpr double kFast_hz = 10e3;
+constexpr double kFast_hz = 5e3;
 constexpr double kBlink_s = 1.0;
 
 std::string hands_channel(const diagnosis::Measurement& measurement) {
@@ -35,6 +35,29 @@ std::string hands_channel(const diagnosis::Measurement& measurement) {
   return {};
 }
 
+// A factor of the times that makes the rate one of a laboratory's sensors; 0: none of the usual.
+double likely_factor(double rate_hz) {
+  constexpr double kLeast_hz = 50.0;
+  constexpr double kMost_hz = 5000.0;
+  for (const double factor : {1e3, 1e-3, 86400.0, 1e6, 1e-6, 1e9, 1e-9}) {
+    if (rate_hz / factor >= kLeast_hz && rate_hz / factor <= kMost_hz) return factor;
+  }
+  return 0.0;
+}
+
+std::string other_unit(double rate_hz) {
+  const double factor = likely_factor(rate_hz);
+  if (rate_hz == 1.0) {
+    return "if the column counts rows: --sample-rate HZ and no column of times; if it holds "
+           "milliseconds: --map 'TITLE=t [ms]' and the other columns";
+  }
+  if (factor == 0.0) return "is the unit of the times the one that the title states?";
+  return fmt::format(
+      "if the times are in another unit, of {:.4g} Hz, although the title says "
+      "otherwise: --map 'TITLE={}' and the other columns",
+      rate_hz / factor, factor == 1e-3 ? std::string("t [ms]") : fmt::format("t * {:g}", factor));
+}
+
 void refuse_blink(const diagnosis::Measurement& measurement) {
   const double length_s = static_cast<double>(measurement.size()) / measurement.rate_hz;
   const std::string hand = hands_channel(measurement);
@@ -42,9 +65,7 @@ void refuse_blink(const diagnosis::Measurement& measurement) {
   throw ConfigError(
       measurement.source + ", time",
       fmt::format("{:.4g} Hz and {:.3g} s in all, of {}", measurement.rate_hz, length_s, hand),
-      fmt::format("at least {:g} s; if the times are seconds, although the title says "
-                  "milliseconds: --map 'TITLE=t * 1000' and the other columns",
-                  kBlink_s));
+      fmt::format("at least {:g} s; {}", kBlink_s, other_unit(measurement.rate_hz)));
 }
 
 // A table whose 't [s]' holds milliseconds looks like one of a very slow sensor.  Slow sensors
@@ -54,9 +75,8 @@ void refuse_slow_hand(const diagnosis::Measurement& measurement) {
   if (hand.empty() || measurement.rate_hz >= kLeastHandRate_hz) return;
   throw ConfigError(measurement.source + ", time",
                     fmt::format("{:.4g} s between rows of {}", 1.0 / measurement.rate_hz, hand),
-                    fmt::format("at most {:.4g} s; if the times are milliseconds, although 't [s]' "
-                                "means seconds: --map 't [s]=t [ms]' and the other columns",
-                                1.0 / kLeastHandRate_hz));
+                    fmt::format("at most {:.4g} s; {}", 1.0 / kLeastHandRate_hz,
+                                other_unit(measurement.rate_hz)));
 }
 
 // Every recording comes this way.
@@ -131,7 +151,7 @@ diagnosis::Measurement read_table(const std::string& path, const ReadOptions& op
   diagnosis::Measurement out =
       screened(std::move(mapped.rows), options, mapped.notes, mapped.back_steps);
   refuse_blink(out);
-  if (mapping.columns.empty()) refuse_slow_hand(out);  // a mapping confirms the unit of the times
+  refuse_slow_hand(out);
   return out;
 }
 

@@ -34,27 +34,6 @@ double middle_over_rows(std::size_t first, std::size_t end, const Size& size) {
   return middle_of(std::move(sizes));
 }
 
-double step_to(const std::vector<double>& values, std::size_t row) {
-  return std::abs(values[row] - values[row - 1]);
-}
-
-// Median size of the steps between unequal rows.
-double usual_step(const std::vector<double>& values, const std::vector<Place>& runs) {
-  return middle_over_rows(1, runs.size(),
-                          [&](std::size_t r) { return step_to(values, runs[r].first); });
-}
-
-double deviation_of(const std::vector<double>& values) {
-  double mean = 0.0;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double from = values[i] - mean;
-    mean += from / static_cast<double>(i + 1);
-    squares += from * (values[i] - mean);
-  }
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 // The end of a converter's or a counter's range: a power of two, or one less.
 bool is_rail(double value) {
   const auto power = [](double size) {
@@ -126,34 +105,6 @@ bool ends_are_near(const std::vector<double>& values) {
   return high - inner_high <= inner && inner_low - low <= inner;
 }
 
-// Places of one or two rows that leave the line between their neighbours by `least` or more, where
-// the rows on both sides go on into each other.
-std::vector<Place> jumps_out_and_back(const std::vector<double>& x, double usual,
-                                      std::size_t most_rows) {
-  constexpr double kLeast = 25.0;  // standard deviations; exp(-25) of Laplace's distribution
-  constexpr double kGoesOn = 8.0;  // likewise; the cubic's own error is below two of them
-  constexpr double kShakes = 0.1;  // of the jump: what was really hit moves on by more
-  const double least = kLeast * usual;
-  std::vector<Place> out;
-  for (std::size_t i = 3; i + 4 < x.size(); ++i) {
-    if (step_to(x, i) < least) continue;
-    for (std::size_t rows = 1; rows <= most_rows; ++rows) {
-      const std::size_t end = i + rows;
-      const double line = 0.5 * (x[i - 1] + x[end]);
-      const double jump = std::min(std::abs(x[i] - line), std::abs(x[end - 1] - line));
-      const auto h = static_cast<double>(rows + 1);
-      const double before = x[i - 1] - over_gap(x[i - 3], x[i - 2], x[end], x[end + 1], h);
-      const double after = x[end] - over_gap(x[end + 2], x[end + 1], x[i - 1], x[i - 2], h);
-      const double most = std::max(kGoesOn * usual, kShakes * jump);
-      if (jump < least || std::abs(before) > most || std::abs(after) > most) continue;
-      out.push_back({i, end});
-      i = end;
-      break;
-    }
-  }
-  return out;
-}
-
 // Of all rows but the places, the range of 99.5 %: a few spikes next to each other are no places.
 std::pair<double, double> range_without(const std::vector<double>& values,
                                         const std::vector<Place>& places) {
@@ -171,6 +122,29 @@ std::pair<double, double> range_without(const std::vector<double>& values,
   return {low, *(x.end() - 1 - tail)};
 }
 
+}  // namespace
+
+double step_to(const std::vector<double>& values, std::size_t row) {
+  return std::abs(values[row] - values[row - 1]);
+}
+
+// Median size of the steps between unequal rows.
+double usual_step(const std::vector<double>& values, const std::vector<Place>& runs) {
+  return middle_over_rows(1, runs.size(),
+                          [&](std::size_t r) { return step_to(values, runs[r].first); });
+}
+
+double deviation_of(const std::vector<double>& values) {
+  double mean = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double from = values[i] - mean;
+    mean += from / static_cast<double>(i + 1);
+    squares += from * (values[i] - mean);
+  }
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
 // A source that beats, as footfalls do, and no disturbance of a wire.
 bool beat(const std::vector<Place>& places) {
   constexpr std::size_t kFewest = 5;
@@ -183,8 +157,6 @@ bool beat(const std::vector<Place>& places) {
   }
   return 2 * least >= most;
 }
-
-}  // namespace
 
 std::size_t BadRows::rows() const noexcept {
   std::size_t sum = 0;
@@ -262,8 +234,12 @@ std::vector<BadRows> far_values(const std::vector<double>& values) {
   return out;
 }
 
-double off_neighbours(const std::vector<double>& x, std::size_t i) {
-  return std::abs(x[i] - (4.0 * (x[i - 1] + x[i + 1]) - x[i - 2] - x[i + 2]) / 6.0);
+double above_neighbours(const std::vector<double>& x, std::size_t i) {
+  return x[i] - (4.0 * (x[i - 1] + x[i + 1]) - x[i - 2] - x[i + 2]) / 6.0;
+}
+
+double off_neighbours(const std::vector<double>& values, std::size_t row) {
+  return std::abs(above_neighbours(values, row));
 }
 
 double usual_off_neighbours(const std::vector<double>& values) {
@@ -271,14 +247,39 @@ double usual_off_neighbours(const std::vector<double>& values) {
                                     [&](std::size_t i) { return off_neighbours(values, i); });
 }
 
+std::vector<Place> jumps_out_and_back(const std::vector<double>& x, double usual, double rate_hz) {
+  constexpr double kLeast = 25.0;  // standard deviations; exp(-25) of Laplace's distribution
+  constexpr double kGoesOn = 8.0;  // likewise; the cubic's own error is below two of them
+  constexpr double kShakes = 0.1;  // of the jump: what was really hit moves on by more
+  const double least = kLeast * usual;
+  const auto most_rows =
+      std::min<std::size_t>(2, static_cast<std::size_t>(kShortestPulse_s * rate_hz * (1.0 + 1e-6)));
+  std::vector<Place> out;
+  if (!(usual > 0.0)) return out;
+  for (std::size_t i = 3; i + 4 < x.size(); ++i) {
+    if (step_to(x, i) < least) continue;
+    for (std::size_t rows = 1; rows <= most_rows; ++rows) {
+      const std::size_t end = i + rows;
+      const double line = 0.5 * (x[i - 1] + x[end]);
+      const auto [jump, other] = std::minmax({std::abs(x[i] - line), std::abs(x[end - 1] - line)});
+      if (jump < kShakes * other) continue;  // the second row alone
+      const auto h = static_cast<double>(rows + 1);
+      const double before = x[i - 1] - over_gap(x[i - 3], x[i - 2], x[end], x[end + 1], h);
+      const double after = x[end] - over_gap(x[end + 2], x[end + 1], x[i - 1], x[i - 2], h);
+      const double most = std::max(kGoesOn * usual, kShakes * jump);
+      if (jump < least || std::abs(before) > most || std::abs(after) > most) continue;
+      out.push_back({i, end});
+      i = end;
+      break;
+    }
+  }
+  return out;
+}
+
 std::optional<BadRows> spikes_in(const std::vector<double>& values, double rate_hz,
                                  const std::function<bool(const Place&)>& quiet) {
   constexpr std::size_t kMostShare = 20;  // a twentieth of the rows: more are a signal
-  const auto most_rows =
-      std::min<std::size_t>(2, static_cast<std::size_t>(kShortestPulse_s * rate_hz * (1.0 + 1e-6)));
-  const double usual = usual_off_neighbours(values);
-  if (!(usual > 0.0) || most_rows == 0) return {};
-  std::vector<Place> places = jumps_out_and_back(values, usual, most_rows);
+  std::vector<Place> places = jumps_out_and_back(values, usual_off_neighbours(values), rate_hz);
   if (places.empty()) return {};
   const auto [low, high] = range_without(values, places);
   const double range = high - low;
@@ -393,46 +394,33 @@ std::optional<BadRows> clipped_in(const std::vector<double>& values,
   return bad;
 }
 
-double held_rows(const std::vector<double>& values, const std::vector<Place>& runs,
-                 double rate_hz) {
-  constexpr std::size_t kFewestRuns = 50;
-  constexpr double kLongest_s = 0.5;  // what is slower is a command's step, which is seen as one
-  // Runs of a noise's last digit are geometric: of a mean of two rows, 87 % have one to three.
-  constexpr double kLeastEven = 0.95;
-  constexpr double kLeastSteps = 3.0;  // of the smallest: single ones are those of a resolution
-  constexpr double kLeastError = 0.01;
-  if (runs.size() < kFewestRuns || values.size() < 3 * runs.size() / 2) return 0.0;
-  const double mean = static_cast<double>(values.size()) / static_cast<double>(runs.size());
-  if (mean > kLongest_s * rate_hz) return 0.0;
-  std::size_t even = 0;
-  double squares = 0.0;
-  double smallest = 0.0;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (std::abs(static_cast<double>(runs[r].rows()) - mean) <= 1.0) ++even;
-    if (r == 0) continue;
-    const double step = step_to(values, runs[r].first);
-    smallest = r == 1 ? step : std::min(smallest, step);
-    squares += step * step / static_cast<double>(runs.size());
+std::optional<BadRows> dropped_in(const std::vector<double>& values, double rate_hz) {
+  constexpr double kJump = 6.0;  // standard deviations of the bend at a row
+  constexpr std::size_t kFewest = 5;
+  const auto off_line = [&](std::size_t first, std::size_t end) {
+    return std::abs(values[first] - 0.5 * (values[first - 1] + values[end]));
+  };
+  const double least = kJump * kNormal * middle_over_rows(1, values.size() - 1, [&](std::size_t i) {
+                         return off_line(i, i + 1);
+                       });
+  if (!(least > 0.0)) return {};
+  const auto longest = static_cast<std::size_t>(kShortestStuck_s * rate_hz);
+  std::vector<Place> jumps;
+  BadRows bad{"drop-outs", {}, "0"};
+  for (std::size_t i = 0, end = 1; i < values.size(); i = end, ++end) {
+    if (values[i] != 0.0) continue;
+    while (end < values.size() && values[end] == 0.0) ++end;
+    bad.places.push_back({i, end});
+    const bool inside = i > 0 && end < values.size() && end - i <= longest;
+    if (inside && off_line(i, end) >= least) jumps.push_back({i, end});
   }
-  if (static_cast<double>(even) < kLeastEven * static_cast<double>(runs.size()) ||
-      usual_step(values, runs) < kLeastSteps * smallest) {
-    return 0.0;
+  // What comes to 0 slowly rests there, and a limit is no drop-out.
+  const auto [low, high] = std::ranges::minmax(values);
+  if (jumps.size() < kFewest || beat(jumps) || 2 * jumps.size() < bad.places.size() ||
+      !(low < 0.0 && high > 0.0)) {
+    return {};
   }
-  const double deviation = deviation_of(values);
-  return squares / 3.0 >= kLeastError * deviation * deviation ? mean : 0.0;
-}
-
-// A ramp of another kind is a signal: a counter has whole numbers.
-bool counts_rows(const std::vector<double>& values) {
-  constexpr double kCounting = 0.98;  // a byte begins again every 256 rows; lost rows are rarer
-  const double usual = values[1] - values[0];
-  if (usual == 0.0) return false;
-  std::size_t same = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] != std::round(values[i])) return false;
-    same += values[i] - values[i - 1] == usual ? 1u : 0u;
-  }
-  return static_cast<double>(same) >= kCounting * static_cast<double>(values.size() - 1);
+  return bad;
 }
 
 }  // namespace stillhand::measurement

@@ -86,6 +86,17 @@ std::vector<double> times_of(const TableHead& head, const Mapping& mapping, cons
   return time_s;
 }
 
+// [Hz] from the first row of the second block to that of the last one; 0: there are not as many.
+double rate_of_blocks(const std::vector<double>& time_s) {
+  const auto changes = [](double a, double b) { return a != b; };
+  const auto second = std::ranges::adjacent_find(time_s, changes);
+  const auto last = std::adjacent_find(time_s.rbegin(), time_s.rend(), changes);
+  if (second == time_s.end()) return 0.0;
+  const auto rows = (last.base() - time_s.begin()) - (second + 1 - time_s.begin());
+  const double span_s = time_s.back() - *(second + 1);
+  return span_s > 0.0 ? static_cast<double>(rows) / span_s : 0.0;
+}
+
 // Moves the rows that are kept into the recording.  A row that repeats an earlier one, as a
 // recorder writes a block of rows twice, is left out.
 class RowTaker {
@@ -144,12 +155,11 @@ class RowTaker {
                                std::size_t row) const {
     std::string want = fmt::format("more than {} s, the time of the row before", time_s[before]);
     if (time_s[row] == time_s[before]) {
-      const double span_s = time_s.back() - time_s.front();
+      const double rate_hz = rate_of_blocks(time_s);
       want = fmt::format(
           "{}; for rows that share a stamp in blocks, no column of times but their rate{}", want,
-          span_s > 0.0 ? fmt::format(", about --sample-rate {:.4g}",
-                                     static_cast<double>(time_s.size() - 1) / span_s)
-                       : ": --sample-rate HZ");
+          rate_hz > 0.0 ? fmt::format(", about --sample-rate {:.4g}", rate_hz)
+                        : ": --sample-rate HZ");
     }
     throw ConfigError(file_.place(row), fmt::format("time {} s", time_s[row]), want);
   }

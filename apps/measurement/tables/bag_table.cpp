@@ -33,6 +33,7 @@ double number_of(const Cell& cell) {
 // Of a topic's messages, those that do not fit its definition, at most: damage hits single ones,
 // and a writer with another definition has more of them.
 constexpr double kMostMisfits = 0.05;
+constexpr std::ptrdiff_t kFarBack_rows = 100;
 // Between the segments of stamps that went back: no bridge reaches over it.
 constexpr std::int64_t kBetweenSegments_ns = 2'000'000'000;
 
@@ -74,7 +75,10 @@ struct TopicRows {
       const auto [low, high] = std::minmax_element(at(i), at(end));
       const auto among = std::count_if(at(segments.back()), at(i),
                                        [&](std::int64_t t) { return t >= *low && t <= *high; });
-      if (2 * among >= at(end) - at(i)) {
+      // A second's worth of rows ahead of all others is no message that came late.
+      const bool ahead =
+          at(end) - at(i) >= kFarBack_rows && *high < *std::min_element(at(segments.back()), at(i));
+      if (ahead || 2 * among >= at(end) - at(i)) {
         segments.push_back(i);
         latest = i;
       } else {
@@ -191,6 +195,12 @@ class BagTable : public TableFile {
     std::int64_t zero_ns = std::numeric_limits<std::int64_t>::max();
     for (auto& [number, rows] : by_topic) {
       if (const std::size_t dropped = rows.sort(); dropped > 0) {
+        if (dropped > rows.time_ns.size()) {
+          throw ConfigError(head().path,
+                            std::to_string(dropped) + " messages of " + name(number) +
+                                " with the stamp of another one",
+                            "stamps that move on; this sender does not set header.stamp");
+        }
         out.notes.push_back(std::to_string(dropped) + " messages of " + name(number) +
                             " left out: their stamp is that of another one.");
       }

@@ -64,12 +64,14 @@ std::size_t find_column(const TableHead& head, const std::string& from) {
   std::vector<std::string_view> titles;
   for (const ColumnHead& column : head.columns) titles.push_back(column.title);
   const auto same = std::ranges::count(titles, from);
+  std::string noted;  // a column may be there, and not be read
+  for (const std::string& note : head.notes) noted += " (" + in_one_line(note) + ")";
   throw ConfigError("--map",
                     same > 1 ? fmt::format("'{}', the title of {} columns", from, same)
                              : "'" + from + "', which is no column of " + head.path,
                     same > 1 ? "its place, such as '#2'"
                              : "'" + in_one_line(settings::nearest(from, titles)) +
-                                   "' or another of " + in_one_line(titles_of(head)));
+                                   "' or another of " + in_one_line(titles_of(head)) + noted);
 }
 
 Choice choose(const TableHead& head, const Mapping& mapping) {

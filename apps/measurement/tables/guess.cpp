@@ -19,11 +19,13 @@ struct Hint {
   std::string_view name;
 };
 // "axis": x, y or z follows, in the word or behind it.
-constexpr std::array<Hint, 34> kHints{{{"time", "t"},
+constexpr std::array<Hint, 36> kHints{{{"time", "t"},
                                        {"zeit", "t"},
                                        {"temps", "t"},
                                        {"timestamp", "t"},
                                        {"seconds", "t"},
+                                       {"clock", "t"},
+                                       {"uhrzeit", "t"},
                                        {"sec", "t"},
                                        {"t", "t"},
                                        {"acc", "axis"},
@@ -77,10 +79,16 @@ char axis_in(const std::string& rest) {
   return 'y';
 }
 
-// The column's unit where it has one that fits; else the channel's own, for a person to correct.
+// The column's unit where it has one that fits, or the title ends with one ("acc_g", "angle deg");
+// else the channel's own, for a person to correct.
 std::string unit_for(const ColumnHead& column, const std::string& name) {
   const std::string wanted = si_unit(name);
-  return column.unit.empty() || !unit_conversion(column.unit, {}, wanted) ? wanted : column.unit;
+  const std::size_t end = column.name.find_last_of("_ ");
+  const std::string last = end == std::string::npos ? "" : column.name.substr(end + 1);
+  for (const std::string& unit : {column.unit, last}) {
+    if (!unit.empty() && unit_conversion(unit, {}, wanted)) return unit;
+  }
+  return wanted;
 }
 
 // What a shell keeps as one word.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -110,9 +111,32 @@ std::optional<double> number_attribute(hid_t object, const char* name) {
   return value;
 }
 
-// Values of a set that is packed by the conventions of netCDF (CF 1.11, sections 2.5.1 and 8.1):
-// what is missing, then a factor and an offset.
+// Both ends of `valid_range`, or what `valid_min` and `valid_max` state.
+std::array<double, 2> valid_range(hid_t set) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::array<double, 2> ends{number_attribute(set, "valid_min").value_or(-kNone),
+                             number_attribute(set, "valid_max").value_or(kNone)};
+  if (H5Aexists(set, "valid_range") <= 0) return ends;
+  const Id attribute(H5Aopen(set, "valid_range", H5P_DEFAULT), H5Aclose);
+  const Id space(H5Aget_space(attribute), H5Sclose);
+  const Id type(H5Aget_type(attribute), H5Tclose);
+  if (is_number(type) && H5Sget_simple_extent_npoints(space) == 2) {
+    (void)H5Aread(attribute, H5T_NATIVE_DOUBLE, ends.data());
+  }
+  return ends;
+}
+
+// Values of a set that is packed by the conventions of netCDF (its users' guide, appendix A; CF
+// 1.11, sections 2.5.1 and 8.1): the sign, what is missing, then a factor and an offset.
 std::string unpack(hid_t set, std::vector<double>& values) {
+  if (const Id type(H5Dget_type(set), H5Tclose); text_attribute(set, "_Unsigned") == "true") {
+    const double range = std::exp2(8.0 * static_cast<double>(H5Tget_size(type)));
+    for (double& value : values) value += value < 0.0 ? range : 0.0;
+  }
+  const auto [low, high] = valid_range(set);
+  std::ranges::replace_if(
+      values, [&](double value) { return value < low || value > high; },
+      std::numeric_limits<double>::quiet_NaN());
   for (const char* name : {"_FillValue", "missing_value"}) {
     const std::optional<double> missing = number_attribute(set, name);
     if (missing) std::ranges::replace(values, *missing, std::numeric_limits<double>::quiet_NaN());
@@ -128,6 +152,8 @@ std::string unpack(hid_t set, std::vector<double>& values) {
 std::string unit_of(hid_t set) {
   for (const char* name : {"unit", "units", "Unit", "Units"}) {
     std::string unit = text_attribute(set, name);
+    unit.resize(
+        std::min(unit.find(" since "), unit.size()));  // of times: the beginning is not used
     if (!unit.empty()) return unit;
   }
   return {};

@@ -3,7 +3,10 @@
 #include <matio.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string_view>
 
@@ -111,9 +114,63 @@ std::string text_of(const matvar_t* variable) {
   return out;
 }
 
-matvar_t* field_of(matvar_t* structure, const char* name) {
+matvar_t* field_of(matvar_t* structure, const char* name, std::size_t element = 0) {
   if (structure == nullptr || structure->class_type != MAT_C_STRUCT) return nullptr;
-  return Mat_VarGetStructFieldByName(structure, name, 0);
+  return Mat_VarGetStructFieldByName(structure, name, element);
+}
+
+constexpr std::array<const char*, 4> kUnitFields{"Unit", "unit", "Units", "units"};
+
+// The unit of a struct's field: of a table or timetable (Properties), of a timeseries (DataInfo,
+// TimeInfo), of `stillhand export` (meta.units), or a text next to it, which is not that of times.
+std::string unit_of(matvar_t* structure, const std::string& field, std::size_t element) {
+  if (const std::string unit =
+          text_of(field_of(field_of(field_of(structure, "meta"), "units"), field.c_str()));
+      !unit.empty()) {
+    return unit;
+  }
+  matvar_t* properties = field_of(structure, "Properties", element);
+  matvar_t* names = field_of(properties, "VariableNames");
+  matvar_t* units = field_of(properties, "VariableUnits");
+  if (names != nullptr && units != nullptr && names->class_type == MAT_C_CELL &&
+      units->class_type == MAT_C_CELL && names->nbytes == units->nbytes) {
+    const std::size_t count = names->data_size > 0 ? names->nbytes / names->data_size : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (text_of(Mat_VarGetCell(names, static_cast<int>(i))) == field) {
+        return text_of(Mat_VarGetCell(units, static_cast<int>(i)));
+      }
+    }
+  }
+  const std::string info = field + "Info";
+  if (std::string unit = text_of(field_of(field_of(structure, info.c_str(), element), "Units"));
+      !unit.empty() || field == "Time" || field == "time" || field == "t") {
+    return unit;
+  }
+  for (const char* name : kUnitFields) {
+    if (std::string unit = text_of(field_of(structure, name, element)); !unit.empty()) return unit;
+  }
+  return {};
+}
+
+// Some struct in it has a field that holds units: its texts must be read too.
+bool states_units(matvar_t* variable, int depth) {
+  if (variable == nullptr || depth > kMostDepth) return false;
+  if (variable->class_type == MAT_C_CELL && variable->rank == 2 && variable->dims != nullptr) {
+    const std::size_t count = std::min(variable->dims[0] * variable->dims[1], kMostElements);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (states_units(Mat_VarGetCell(variable, static_cast<int>(i)), depth + 1)) return true;
+    }
+  }
+  if (variable->class_type != MAT_C_STRUCT) return false;
+  for (const char* name : {"meta", "Properties", "DataInfo"}) {
+    if (field_of(variable, name) != nullptr) return true;
+  }
+  const auto stated = [&](const char* name) { return field_of(variable, name) != nullptr; };
+  if (std::ranges::any_of(kUnitFields, stated)) return true;
+  for (unsigned f = 0; f < Mat_VarGetNumberOfFields(variable); ++f) {
+    if (states_units(Mat_VarGetStructFieldByIndex(variable, f, 0), depth + 1)) return true;
+  }
+  return false;
 }
 
 // Walks over the columns of a variable, in the same order whether its data are loaded or not.
@@ -168,12 +225,10 @@ class ColumnWalk {
     }
     for (std::size_t e = 0; e < elements; ++e) {
       const std::string at = elements == 1 ? "" : "(" + std::to_string(e + 1) + ")";
-      // `stillhand export` states the units of a struct's fields in meta.units.
-      matvar_t* units = field_of(field_of(variable, "meta"), "units");
       for (unsigned f = 0; f < fields; ++f) {
         if (names[f] == nullptr) continue;
         walk(Mat_VarGetStructFieldByIndex(variable, f, e), title + at + "." + names[f],
-             text_of(field_of(units, names[f])), depth + 1);
+             unit_of(variable, names[f], e), depth + 1);
       }
     }
   }
@@ -228,6 +283,20 @@ class ValueWalk : public ColumnWalk {
   const std::vector<std::size_t>& wanted_;
 };
 
+// Of version 5 (MathWorks, "MAT-File Format"): an element reaches beyond the end of the file.
+bool is_cut_off(const std::string& path) {
+  constexpr std::uint64_t kHead_bytes = 128;
+  std::ifstream file(path, std::ios::binary);
+  const std::uint64_t size = std::filesystem::file_size(path);
+  std::array<std::uint32_t, 2> tag{};  // kind and bytes of an element
+  std::uint64_t at = kHead_bytes;
+  while (at + sizeof tag <= size && file.seekg(static_cast<std::streamoff>(at)) &&
+         file.read(reinterpret_cast<char*>(tag.data()), sizeof tag)) {
+    at += sizeof tag + tag[1];
+  }
+  return at > size;
+}
+
 TableHead mat_head(const std::string& path) {
   const MatFile file = open_mat(path);
   std::vector<std::string> names;
@@ -242,8 +311,7 @@ TableHead mat_head(const std::string& path) {
   for (const std::string& name : names) {
     Variable variable(Mat_VarReadInfo(file.get(), name.c_str()));
     if (!variable) continue;
-    if (variable->class_type == MAT_C_STRUCT &&
-        Mat_VarGetStructFieldByName(variable.get(), "meta", 0) != nullptr) {
+    if (states_units(variable.get(), 0)) {
       variable.reset(Mat_VarRead(file.get(), name.c_str()));
     }
     walk.walk(variable.get(), name, {}, 0);
@@ -263,6 +331,10 @@ TableHead mat_head(const std::string& path) {
   head.columns = std::move(walk.heads);
   if (!objects.empty()) {
     head.notes.push_back("Objects of MATLAB are not read: " + listed(objects) + ".");
+  }
+  if (Mat_GetVersion(file.get()) == MAT_FT_MAT5 && Mat_GetHeader(file.get()) != nullptr &&
+      is_cut_off(path)) {
+    head.notes.emplace_back("The file is cut off: its last variables are not there.");
   }
   if (!walk.left_out.empty()) head.notes.push_back("Not read: " + listed(walk.left_out) + ".");
   return head;

@@ -38,7 +38,7 @@ struct ForeignKind {
   std::string_view convert;  // FILE stands for its name
 };
 using namespace std::string_view_literals;
-constexpr std::array<ForeignKind, 13> kForeignKinds{{
+constexpr std::array<ForeignKind, 19> kForeignKinds{{
     {"SQLite format 3\0"sv, "an SQLite file (rosbag2's .db3)",
      "MCAP: printf 'output_bags: [{uri: mcap, storage_id: mcap, all_topics: true}]' > o.yaml; "
      "ros2 bag convert -i FILE -o o.yaml"},
@@ -48,8 +48,11 @@ constexpr std::array<ForeignKind, 13> kForeignKinds{{
     {"\xFD"
      "7zXZ",
      "a file compressed with xz", "the file in it: xz --decompress --keep FILE"},
-    {"PK\x03\x04", "a zip archive (.xlsx, .ods, .zip)",
-     "a CSV of the sheet: libreoffice --convert-to csv FILE"},
+    {"BZh", "a file compressed with bzip2", "the file in it: bunzip2 --keep FILE"},
+    {"7z\xBC\xAF\x27\x1C", "an archive of 7-Zip", "the file in it: 7z x FILE"},
+    {"PK\x03\x04", "a zip archive (.xlsx, .ods, .npz, .zip)",
+     "a CSV of the sheet: libreoffice --convert-to csv FILE; of numpy's .npz its arrays, of others "
+     "what is in them: unzip FILE"},
     {"\xD0\xCF\x11\xE0", "an old Excel file (.xls)",
      "a CSV of the sheet: libreoffice --convert-to csv FILE"},
     {"TDSm", "a TDMS file of LabVIEW",
@@ -68,6 +71,15 @@ constexpr std::array<ForeignKind, 13> kForeignKinds{{
     {"\x93NUMPY", "an array of NumPy",
      "a CSV: python3 -c \"import numpy; numpy.savetxt('out.csv', numpy.load('FILE'), "
      "delimiter=',')\""},
+    {"ARROW1", "a Feather file",
+     "a CSV: python3 -c \"import pandas; pandas.read_feather('FILE').to_csv('out.csv')\""},
+    {"\x80\x04\x95", "a pickle of Python",
+     "a CSV: python3 -c \"import pandas; pandas.read_pickle('FILE').to_csv('out.csv')\""},
+    {"LOGG", "a log of a CAN bus (.blf)",
+     "a CSV: python3 -m can.logconvert FILE out.csv, and then its signals by their database"},
+    {"0       ", "a European data format (.edf)",
+     "a CSV: python3 -c \"import mne; mne.io.read_raw_edf('FILE').to_data_frame()"
+     ".to_csv('out.csv')\""},
     {"%PDF", "a PDF", "the table that it was made from"},
 }};
 
@@ -115,7 +127,12 @@ std::string read_text(const std::string& path) {
 FileKind kind_of(const std::string& path) {
   std::error_code none;
   if (std::filesystem::is_directory(path, none)) {
-    throw ConfigError(path, "a folder", "a file in it, for example the .mcap of a bag");
+    std::string file = "the .mcap of a bag";
+    for (const auto& entry : std::filesystem::directory_iterator(path, none)) {
+      const std::string ending = entry.path().extension().string();
+      if (ending == ".mcap" || ending == ".db3") file = entry.path().string();
+    }
+    throw ConfigError(path, "a folder", "a file in it, for example " + in_one_line(file));
   }
   const std::string begin = first_bytes(path);
   refuse_foreign(path, begin);

@@ -70,15 +70,16 @@ bool take(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-// "hh:mm", "hh:mm:ss" or "hh:mm:ss.fff" (ISO 8601), in [s].
+// "hh:mm", "hh:mm:ss", "hh:mm:ss.fff" or "hhmmss.fff" (ISO 8601), in [s].
 bool take_clock(std::string_view& text, double& seconds) {
   int hour = 0;
   int minute = 0;
   int second = 0;
-  if (!take_digits(text, 2, hour) || !take(text, ":") || !take_digits(text, 2, minute))
-    return false;
+  if (!take_digits(text, 2, hour)) return false;
+  const bool basic = !take(text, ":");
+  if (!take_digits(text, 2, minute) || (basic && text.size() < 2)) return false;
   double fraction = 0.0;
-  if (take(text, ":")) {
+  if (basic || take(text, ":")) {
     if (!take_digits(text, 2, second)) return false;
     if (take(text, ".,")) {
       double scale = 0.1;
@@ -103,6 +104,30 @@ bool is_zone(std::string_view text, double& ahead) {
   return text.empty();
 }
 
+// "2026-11-26", "2026/11/26", "20261126" or "26.11.2026", with a blank or a T behind it.
+bool take_date(std::string_view& text, int& year, int& month, int& day) {
+  std::string_view rest = text;
+  const bool by_year = take_digits(rest, 4, year);
+  if (by_year && (rest.starts_with('-') || rest.starts_with('/'))) {
+    const std::string_view sign = rest.substr(0, 1);
+    if (!take(rest, sign) || !take_digits(rest, 2, month) || !take(rest, sign) ||
+        !take_digits(rest, 2, day)) {
+      return false;
+    }
+  } else if (by_year) {
+    if (!take_digits(rest, 2, month) || !take_digits(rest, 2, day)) return false;
+  } else {
+    rest = text;
+    if (!take_digits(rest, 2, day) || !take(rest, ".") || !take_digits(rest, 2, month) ||
+        !take(rest, ".") || !take_digits(rest, 4, year)) {
+      return false;
+    }
+  }
+  if (!take(rest, "T ")) return false;
+  text = rest;
+  return true;
+}
+
 // A stamp of ISO 8601: a date and a clock in [s] since 1970 (UTC where it states no zone), or a
 // clock alone in [s] since midnight.
 bool is_stamp(std::string_view text, double& seconds) {
@@ -110,15 +135,12 @@ bool is_stamp(std::string_view text, double& seconds) {
   int month = 0;
   int day = 0;
   double date = 0.0;
-  std::string_view rest = text;
-  if (take_digits(rest, 4, year) && take(rest, "-") && take_digits(rest, 2, month) &&
-      take(rest, "-") && take_digits(rest, 2, day) && take(rest, "T ")) {
+  if (take_date(text, year, month, day)) {
     const std::chrono::year_month_day ymd(std::chrono::year(year),
                                           std::chrono::month(static_cast<unsigned>(month)),
                                           std::chrono::day(static_cast<unsigned>(day)));
     if (!ymd.ok()) return false;
     date = static_cast<double>(std::chrono::sys_days(ymd).time_since_epoch().count()) * 86400.0;
-    text = rest;
   }
   double clock = 0.0;
   double ahead = 0.0;

@@ -80,6 +80,8 @@ DecodedText from(std::string_view bytes, const char* encoding, const std::string
 // Encoding of a text by its byte order mark, or by its zeros: a table has mostly characters below
 // 256, so that each second byte of UTF-16 is 0.  Null: one byte a character.
 const char* wide_encoding(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (bytes.starts_with("\xFF\xFE\0\0"sv) && bytes.size() > 4) return "UTF-32";
   if (bytes.starts_with("\xFF\xFE") && bytes.size() > 2) return "UTF-16LE";
   if (bytes.starts_with("\xFE\xFF") && bytes.size() > 2) return "UTF-16BE";
   constexpr std::size_t kLookedAt_bytes = 1024;
@@ -112,7 +114,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
 void take_plain_signs(std::string& text) {
   if (!is_ascii(text)) {
     replace_all(text, "\u00A0", " ");  // no-break space
-    replace_all(text, "\u202F", " ");  // narrow no-break space
+    for (const char* blank : {"\u202F", "\u2007", "\u2009"}) replace_all(text, blank, " ");
     replace_all(text, "\u2212", "-");  // minus sign
     replace_all(text, "\uFEFF", "");   // byte order mark within a joined file
   }
@@ -123,7 +125,8 @@ DecodedText decoded(std::string bytes, const std::string& path) {
   const std::string_view all = bytes;
   if (const char* encoding = wide_encoding(all)) {
     const bool marked = all.starts_with("\xFF\xFE") || all.starts_with("\xFE\xFF");
-    return from(all.substr(marked ? 2 : 0), encoding, path);
+    const bool strips = std::string_view(encoding) == "UTF-32";  // by itself
+    return from(all.substr(marked && !strips ? 2 : 0), encoding, path);
   }
   std::string note = without_zeros_at_end(bytes);
   if (const std::size_t zero = bytes.find('\0'); zero != std::string::npos) {

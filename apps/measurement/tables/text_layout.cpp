@@ -88,9 +88,10 @@ Reading read_as(const TextForm& form, const std::vector<TextLine>& lines,
   return out;
 }
 
-// A row may lack some of its values, and be shorter.
+// A row may lack some of its values, and be shorter; a whole one may end with a comment.
 bool is_row(const LineShape& line, const LineShape& usual) {
-  return line.cells <= usual.cells && line.texts <= usual.texts &&
+  const bool commented = line.cells <= usual.cells + 1 && line.numbers == usual.numbers;
+  return (commented || (line.cells <= usual.cells && line.texts <= usual.texts)) &&
          line.numbers >= std::max<std::size_t>(1, usual.numbers / 2);
 }
 
@@ -108,9 +109,14 @@ std::vector<TextLine> first_lines(std::string_view text) {
   return lines;
 }
 
+std::string_view without_comment_mark(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t#%/");
+  return first == std::string_view::npos ? std::string_view() : line.substr(first);
+}
+
 bool says_degrees(std::string_view line) {
   std::string plain;
-  for (const char c : line) {
+  for (const char c : without_comment_mark(line)) {
     if (c != ' ' && c != '\t') plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   }
   return plain == "indegrees=yes";
@@ -192,16 +198,13 @@ RowWidth width_of(const std::vector<TextLine>& lines, const Reading& reading) {
   return out;
 }
 
-std::string_view without_comment_mark(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t#%/");
-  return first == std::string_view::npos ? std::string_view() : line.substr(first);
-}
+constexpr std::string_view kComment = "Comment";
 
 // Titles of one line.  Those at its end that no row has a cell for are left out: a separator behind
 // the last title, and LabVIEW's "Comment".  Rows that end with a separator have a cell too many.
 std::vector<std::string> titles_in(std::string_view line, char separator, RowWidth rows) {
   std::vector<std::string> titles = cells_of(line, separator);
-  while (titles.size() > rows.cells && (titles.back().empty() || titles.back() == "Comment")) {
+  while (titles.size() > rows.cells && (titles.back().empty() || titles.back() == kComment)) {
     titles.pop_back();
   }
   if (rows.end_with_separator && titles.size() + 1 == rows.cells) titles.emplace_back();
@@ -222,6 +225,7 @@ void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, RowW
     }
     std::vector<std::string> titles = titles_in(lines[i].text, separator, rows);
     if (titles.size() == cells) {
+      if (above.empty() && plain_cell(lines[i].text).ends_with(kComment)) out.comment_cells = 1;
       above.push_back(std::move(titles));
       continue;
     }
@@ -248,6 +252,27 @@ void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, RowW
   for (std::size_t i = 0; i < out.titles.size(); ++i) {
     if (out.titles[i].empty()) out.titles[i] = "column " + std::to_string(i + 1);
   }
+}
+
+// What a head of LabVIEW (NI, "Specification for the LabVIEW Measurement File") states about its
+// columns: units, and the step of times that no column holds.
+void take_labview(const std::vector<TextLine>& lines, std::size_t first_row, TextLayout& out) {
+  if (out.titles.empty() || out.titles[0] != "X_Value") return;
+  bool no_times = false;
+  double step_s = 0.0;
+  for (std::size_t i = 0; i < first_row; ++i) {
+    std::vector<std::string> cells = cells_of(lines[i].text, out.form.separator);
+    if (cells[0] == "Y_Unit_Label" && out.units.empty()) {
+      cells[0] = "s";
+      cells.resize(out.titles.size());
+      out.units = std::move(cells);
+    } else if (cells.size() > 1 && cells[0] == "X_Columns") {
+      no_times = cells[1] == "No";
+    } else if (cells.size() > 1 && cells[0] == "Delta_X") {
+      (void)read_cell(cells[1], out.form.decimal, step_s);
+    }
+  }
+  if (no_times && step_s > 0.0) out.rate_hz = 1.0 / step_s;
 }
 
 }  // namespace
@@ -295,8 +320,9 @@ TextLayout find_layout(std::string_view text, const TextForm& asked, const std::
   const auto at = std::ranges::find(lines, first.number, &TextLine::number);
   out.in_degrees =
       std::any_of(lines.begin(), at, [](const TextLine& line) { return says_degrees(line.text); });
-  take_titles(lines, static_cast<std::size_t>(at - lines.begin()), width_of(plain, best), path,
-              out);
+  const auto row = static_cast<std::size_t>(at - lines.begin());
+  take_titles(lines, row, width_of(plain, best), path, out);
+  take_labview(lines, row, out);
   return out;
 }
 

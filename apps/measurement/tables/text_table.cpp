@@ -21,6 +21,7 @@ TableHead head_of_text(const TextLayout& layout, const std::string& path, const 
   TableHead head;
   if (!note.empty()) head.notes.push_back(note);
   head.path = path;
+  head.rate_hz = layout.rate_hz;
   head.form = "Text table with " + separator_name(layout.form.separator) +
               " between columns and '" + std::string(1, layout.form.decimal) + "' as decimal sign";
   for (std::size_t i = 0; i < layout.titles.size(); ++i) {
@@ -53,13 +54,17 @@ class TextTable : public TableFile {
       if (line.text.find_first_not_of(" \t") == std::string_view::npos) continue;
       if (is_comment(line.text)) continue;
       split(line.text, layout_.form.separator, cells);
-      if (cells.size() < layout_.titles.size()) {
-        if (!line.ended) {
-          out.notes.emplace_back("The last line is cut off and left out.");
-          break;
-        }
-        ++short_rows;
+      if (cells.size() < layout_.titles.size() && !line.ended) {
+        out.notes.emplace_back("The last line is cut off and left out.");
+        break;
       }
+      if (const std::size_t lines = lines_of_text(line); lines > 0) {
+        out.notes.push_back(std::to_string(lines) + (lines == 1 ? " line" : " lines") +
+                            " of text behind the rows left out, from line " +
+                            std::to_string(line.number) + " on.");
+        break;
+      }
+      short_rows += cells.size() < layout_.titles.size() ? 1u : 0u;
       take_row(line, cells, columns, out);
     }
     if (short_rows > 0) {
@@ -74,6 +79,25 @@ class TextTable : public TableFile {
   }
 
  private:
+  // Lines without any number from this one to the end of the file, where a logger says that it has
+  // ended; 0: this one has a number, or more than a few lines follow.
+  [[nodiscard]] std::size_t lines_of_text(const TextLine& first) const {
+    constexpr std::size_t kMost = 20;
+    std::vector<std::string_view> cells;
+    std::size_t count = 0;
+    TextLines walk(text_, first.offset, first.number);
+    for (TextLine line; walk.next(line);) {
+      split(line.text, layout_.form.separator, cells);
+      double number = 0.0;
+      const bool has_number = std::ranges::any_of(cells, [&](std::string_view cell) {
+        return read_cell(cell, layout_.form.decimal, number) == CellContent::kNumber;
+      });
+      const bool blank = line.text.find_first_not_of(" \t,;") == std::string_view::npos;
+      if (has_number || (blank && count == 0) || ++count > kMost) return 0;
+    }
+    return count;
+  }
+
   void check_size(std::size_t columns) const {
     const auto rows = static_cast<std::size_t>(std::ranges::count(text_, '\n'));
     if (columns > 0 && rows > most_values_ / columns) {
@@ -96,7 +120,7 @@ class TextTable : public TableFile {
     const std::size_t wanted = layout_.titles.size();
     if (cells.size() > wanted) {
       const bool last_is_empty = cells.size() == wanted + 1 && plain_cell(cells.back()).empty();
-      if (!last_is_empty) {
+      if (!last_is_empty && cells.size() > wanted + layout_.comment_cells) {
         fail(line, cells[wanted], "more than " + std::to_string(wanted) + " cells",
              std::to_string(wanted) + ", as the titles are, with " +
                  separator_name(layout_.form.separator) + " between them");

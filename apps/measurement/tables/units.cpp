@@ -35,6 +35,9 @@ constexpr std::array<Alias, 6> kAliases{{{"deg", "degree"},
                                          {"kNm", "kN.m"},
                                          {"msec", "ms"},
                                          {"usec", "us"}}};
+// Written too, and not in its grammar.
+constexpr std::array<Alias, 4> kSigns{
+    {{"\u207B\u00B9", "-1"}, {"\u207B\u00B2", "-2"}, {"\u207B\u00B3", "-3"}, {"\u22C5", "."}}};
 // The library's g is the gram.
 constexpr std::array<Alias, 4> kGravity{
     {{"g", "gravity"}, {"G", "gravity"}, {"mg", "(0.001 gravity)"}, {"gn", "gravity"}}};
@@ -79,6 +82,11 @@ Unit parsed(const std::string& text, bool with_gravity) {
   if (text.size() > kLongestUnit) return nullptr;
   if (is_one(text)) return Unit(ut_get_dimensionless_unit_one(unit_system()));
   std::string words = with_aliases(text, kAliases);
+  for (const auto& [sign, plain] : kSigns) {
+    for (std::size_t at = words.find(sign); at != std::string::npos; at = words.find(sign)) {
+      words.replace(at, sign.size(), plain);
+    }
+  }
   if (with_gravity) words = with_aliases(words, kGravity);
   return Unit(ut_parse(unit_system(), words.c_str(), UT_UTF8));
 }

@@ -181,7 +181,7 @@ TEST(BagTableTest, StampsThatGoBackBeginANewStretchAndAreNamed) {
   for (std::int64_t i = 0; i < 2000; ++i) {
     const std::int64_t time_ns = i * 10'000'000 - (i < 1000 ? 0 : 5'000'000'000) + 1'000'000'000;
     bag.imu(time_ns, 1e-3 * static_cast<double>(i) + 0.1 * static_cast<double>(i % 3));
-    bag.wrench(time_ns, static_cast<double>(i % 7));
+    bag.wrench(time_ns, static_cast<double>(i % 7) + 1e-3 * static_cast<double>(i));
   }
   bag.close();
   const auto sut = read_measurement(
