@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 
 #include "apps/measurement/screening_json.hpp"
 #include "services/signal/difference_model.hpp"
@@ -56,6 +57,17 @@ std::string coefficient_table(const IdentifyResult& result) {
   return text;
 }
 
+// What no single recording shows: an axis that is turned, or a unit between two that a hand has,
+// gives as good a model.
+std::string assumed_of(const IdentifyResult& result) {
+  const auto sum = [](const std::vector<double>& x) { return std::reduce(x.begin(), x.end()); };
+  const bool same = sum(result.model.fit.numerator) * sum(result.model.fit.denominator) > 0.0;
+  return fmt::format(
+      "signs and units as the columns state them ({} has {} at 0 Hz); one recording does not show "
+      "whether they are right",
+      result.output, same ? "the sign of " + result.input : "not the sign of " + result.input);
+}
+
 std::string quality_lines(const IdentifyResult& result) {
   const auto& heldout = result.model.heldout;
   std::string text = fmt::format(
@@ -70,6 +82,7 @@ std::string quality_lines(const IdentifyResult& result) {
   text += result.notch ? fmt::format("notch              {:.2f} Hz, {:.1f} dB\n",
                                      result.notch->frequency_hz, result.notch->magnitude_db)
                        : "notch              none from 0.5 to 10 Hz\n";
+  text += "assumed            " + assumed_of(result) + "\n";
   text +=
       result.unusable.empty()
           ? fmt::format("filter at 1 kHz    within {:.2f} % of the model's peak gain, 0 to 10 Hz\n",
@@ -107,6 +120,7 @@ std::string result_json(const IdentifyResult& result) {
       {"usable", usable},
       {"why", result.unusable},
       {"text", result.unusable},
+      {"assumed", assumed_of(result)},
       {"screening", measurement::screening_json(result.screening)},
       {"control_model", usable ? model_json(result.model.control) : ordered_json(nullptr)},
       {"conversion_error", usable ? ordered_json(result.model.conversion_error) : nullptr},

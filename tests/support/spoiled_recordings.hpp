@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/recording/core/recording.hpp"
@@ -176,6 +177,20 @@ inline const std::vector<Case>& cases() {
        [](Values& a, Values&) {
          for (const std::size_t row : {150u, 1950u, 2020u, 3600u, 4100u, 5111u}) a[row] -= 90.0;
        }},
+      {"spikes in both at once", "f", "spikes", false,
+       [](Values& a, Values& f) {
+         for (const std::size_t row : {150u, 1950u, 2020u, 3600u, 4100u, 5111u}) {
+           a[row] += 60.0;
+           f[row] += row < 3000 ? 80.0 : -80.0;
+         }
+       }},
+      {"drop-outs to zero", "f", "drop-outs", false,
+       [](Values&, Values& f) {
+         for (const std::size_t row :
+              {300u, 410u, 1111u, 1900u, 2222u, 2950u, 3333u, 4400u, 4987u, 5050u, 5301u, 5777u}) {
+           fill(f, row, row + 2 + row % 3, 0.0);
+         }
+       }},
       {"one spike", "a_y", "spikes", false, [](Values& a, Values&) { a[1234] += 300; }},
       {"frozen tail", "f", "stuck", false,
        [](Values&, Values& f) { fill(f, 4000, kRows, f[4000]); }},
@@ -204,6 +219,30 @@ inline const std::vector<Case>& cases() {
       {"held at 10 Hz", "f", "held", true, [](Values&, Values& f) { hold(f, 10); }},
       {"held at 20 Hz", "f", "held", true, [](Values&, Values& f) { hold(f, 5); }},
       {"held at 30 Hz", "a_y", "held", true, [](Values& a, Values&) { hold(a, 10.0 / 3.0); }},
+      {"straight lines from 20 Hz", "a_y", "held", true,
+       [](Values& a, Values&) {
+         const Values from = a;
+         for (std::size_t n = 0; n + 5 < a.size(); ++n) {
+           const std::size_t knot = n / 5 * 5;
+           a[n] = from[knot] + 0.2 * static_cast<double>(n % 5) * (from[knot + 5] - from[knot]);
+         }
+       }},
+      {"held as a bus delivers", "f", "held", true,
+       [](Values&, Values& f) {
+         Dice dice;
+         for (std::size_t n = 0; n < f.size();) {
+           const std::size_t end =
+               std::min(f.size(), n + 2 + static_cast<std::size_t>(8.0 * dice.next()));
+           fill(f, n, end, f[n]);
+           n = end;
+         }
+       }},
+      {"16 bits that overflow", "f", "overflow", true,
+       [](Values&, Values& f) {
+         for (double& value : f) value -= 8.0 * std::round(value / 8.0);
+       }},
+      {"nine steps", "f", "coarse", true, [](Values&, Values& f) { round_to(f, 1.5); }},
+      {"columns exchanged", "", "", true, [](Values& a, Values& f) { std::swap(a, f); }},
       {"a counter for a signal", "a_y", "counter", true,
        [](Values& a, Values&) {
          for (std::size_t n = 0; n < a.size(); ++n) a[n] = static_cast<double>(n % 256);

@@ -18,7 +18,8 @@ constexpr double kLargestDrift = 0.02;  // as clock_drift's
 constexpr double kSegments = 16.0;
 constexpr double kShortestSegment_s = 2.0;
 constexpr double kLongestSegment_s = 20.0;
-constexpr double kFine_s = 0.04;  // a sixth of a period at 4 Hz, over half of the record
+constexpr double kFine_s = 0.04;   // a sixth of a period at 4 Hz, over half of the record
+constexpr double kLeast_s = 0.01;  // a 25th of it: what is less costs hardly anything
 
 // Means over `factor` samples, about the mean of all.
 std::vector<double> thinned(const std::vector<double>& x, std::size_t factor) {
@@ -119,7 +120,7 @@ std::vector<Alignment> readings(const Alignment& found) {
   // The range of `delay`, which is an effect.
   constexpr double kEarliest_s = -0.1;
   constexpr double kLatest_s = 0.5;
-  const bool drifts = std::abs(found.drift) * found.middle_s >= kFine_s;
+  const bool drifts = std::abs(found.drift) * found.middle_s >= kLeast_s;
   if (!drifts && found.lag_s >= kEarliest_s && found.lag_s <= kLatest_s) return {};
   std::vector<Alignment> out;
   for (const double of_body_s : {0.0, 0.05, 0.1, 0.15}) {
@@ -144,7 +145,7 @@ std::vector<double> moved(const std::vector<double>& x, double rate_hz, const Al
 std::string in_words(const Alignment& alignment) {
   std::array<char, 160> text{};
   const char* way = alignment.lag_s < 0.0 ? "leads" : "follows";
-  if (std::abs(alignment.drift) * alignment.middle_s < kFine_s) {
+  if (std::abs(alignment.drift) * alignment.middle_s < kLeast_s) {
     std::snprintf(text.data(), text.size(), "the output %s the input by %.3g s", way,
                   std::abs(alignment.lag_s));
   } else {

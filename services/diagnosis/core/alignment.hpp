@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -55,5 +56,16 @@ inline constexpr double kAlignmentGate = 0.01;
 /// [-] of the squared error that another clock must leave at most: a fifth.  On a position that an
 /// integrator holds (a servo), a drift that is none left a quarter.
 inline constexpr double kBetterClock = 0.2;
+
+/// METHOD Eq. DG-81: leads [s] of the output over the input that are tried.  A body's output
+/// follows its input, so that a model that knows the input's future explains no more; one of an
+/// exchanged input and output, which a differentiator joins, does.
+inline constexpr std::array<double, 2> kLeads_s{0.04, 0.08};
+/// [-] of the output's power that a model must leave for a lead to be looked for: 0.3 % of its
+/// size.
+inline constexpr double kLeadGate = 1e-5;
+/// [-] of the squared error that the future must leave at most.  Measured recordings left 0.27 (a
+/// damper under one sinusoid) and more, exchanged columns 0.06 and less.
+inline constexpr double kBetterLead = 0.1;
 
 }  // namespace stillhand::diagnosis

@@ -246,6 +246,17 @@ void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
   diagnosis.final_error = held_out_error(errors.back(), variance);
 }
 
+// Effects of channels that do not belong together name nothing.
+void drop_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks,
+                  double variance) {
+  if (diagnosis.effects.empty()) return;
+  diagnosis.effects.clear();
+  diagnosis.model = diagnosis.baseline.model;
+  diagnosis.search = {
+      diagnosis.model, {}, 0, false, false, {}, std::move(diagnosis.search.last_tried), {}};
+  add_effects(diagnosis, signals, blocks, variance);
+}
+
 // A note for each kind that a recording held out whole has refuted.
 void note_refuted(Diagnosis& diagnosis) {
   std::vector<std::string> noted;
@@ -399,6 +410,11 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   step("baseline");
   diagnosis.baseline = chosen_baseline(signals, blocks, options, diagnosis.model_class);
   allow_slow_poles(diagnosis, signals, blocks);
+  if (!diagnosis.no_model) {
+    diagnosis.no_model =
+        exchanged_of(working, signals, blocks, diagnosis.baseline.model, options.order);
+    if (diagnosis.no_model) diagnosis.options.search.most_effects = 0;
+  }
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
   const std::optional<PeriodicExcitation> excitation = periodic_excitation_of(signals);
   {
@@ -417,6 +433,11 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   put_in_order(diagnosis, signals, blocks);
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
+  if (!diagnosis.no_model) {
+    diagnosis.no_model = no_model_of(working, signals, blocks, diagnosis.model,
+                                     diagnosis.final_error.rmse, options.order);
+    if (diagnosis.no_model) drop_effects(diagnosis, signals, blocks, variance);
+  }
   add_sizes(diagnosis, signals);
   note_refuted(diagnosis);
   std::vector<bool> counts;
@@ -425,18 +446,6 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
       carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks, counts);
   add_ties_with_time(diagnosis);
   add_carried(diagnosis, signals, blocks, variance);
-  if (!diagnosis.no_model) {
-    diagnosis.no_model = no_model_of(working, signals, blocks, diagnosis.model,
-                                     diagnosis.final_error.rmse, options.order);
-    if (diagnosis.no_model && !diagnosis.effects.empty()) {
-      DiagnoseOptions bare = options;
-      bare.search.most_effects = 0;
-      Diagnosis without_effects = diagnose(measurement, bare);
-      without_effects.options = options;
-      without_effects.no_model = diagnosis.no_model;
-      return without_effects;
-    }
-  }
   const Screening screening(diagnosis.model, signals, blocks, impulse_response);
   diagnosis.after = detected(screening, excitation);
   if (!is_rounding(diagnosis.final_error.rmse, signals)) {

@@ -33,6 +33,11 @@ struct SampleFault {
   bool unsound = false;         ///< a model of this channel means nothing
 };
 
+/// [-] of a channel's rows at a limit.  Of Gauss' noise a limit lets through 1 - p of the gain, p
+/// the share of the rows at it (Bussgang, 1952); a filter may miss by a twentieth (max_error of
+/// rate_conversion).
+inline constexpr double kMostClipped = 0.05;
+
 /// Measured channels on one uniform grid, with a stretch for every run without a long gap.  Samples
 /// of a short gap are filled in by interpolation, so that a simulation can run through them; their
 /// weight is 0.

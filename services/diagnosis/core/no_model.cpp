@@ -111,8 +111,8 @@ class OtherReadings {
   OtherReadings(const Measurement& measurement, const Signals& signals, double left, int order)
       : measurement_(measurement), signals_(signals), left_(left), order_(order) {}
 
-  // Only where the inputs explain nothing: a force that holds more than they cause explains them
-  // well too, by leaving the rest out.
+  // A force that holds more than its input causes explains it well too, by leaving the rest out:
+  // only where the inputs explain nothing, or their future explains far more.
   [[nodiscard]] std::optional<NoModel> swapped() const {
     if (signals_.inputs().size() != 1) return {};
     const std::string& input = signals_.inputs().front().name;
@@ -121,6 +121,17 @@ class OtherReadings {
     return NoModel{"swapped", "the columns may be swapped: " + signals_.output().name +
                                   " explains " + percent(left) + " of " + input + ", and " + input +
                                   " " + percent(left_) + " of " + signals_.output().name};
+  }
+
+  // Eq. DG-81.
+  [[nodiscard]] bool knows_the_future() const {
+    if (left_ < kLeadGate || signals_.inputs().size() != 1) return false;
+    return std::ranges::any_of(kLeads_s, [&](double lead_s) {
+      const Signals shifted = signals_.moved([&](const Signal& signal) {
+        return diagnosis::moved(signal.values, signals_.rate_hz(), {-lead_s, 0.0, 0.0});
+      });
+      return left_by_linear(shifted, order_) < kBetterLead * left_;
+    });
   }
 
   [[nodiscard]] std::optional<NoModel> clocks() const {
@@ -210,6 +221,15 @@ class OtherReadings {
 };
 
 }  // namespace
+
+std::optional<NoModel> exchanged_of(const Measurement& measurement, const Signals& signals,
+                                    const Blocks& blocks, const Model& baseline, int order) {
+  const double error = held_out(baseline, signals, blocks).rmse();
+  const double still = without_inputs(baseline, signals, blocks).rmse();
+  const double left = std::pow(error / std::max(still, 1e-300), 2.0);
+  const OtherReadings others(measurement, signals, left, order);
+  return others.knows_the_future() ? others.swapped() : std::nullopt;
+}
 
 std::optional<NoModel> no_model_of(const Measurement& measurement, const Signals& signals,
                                    const Blocks& blocks, const Model& model, double heldout_rmse,

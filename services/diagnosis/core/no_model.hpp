@@ -15,6 +15,10 @@ struct NoModel {
   std::string why;     ///< one sentence without its stop
 };
 
+/// METHOD Eq. DG-81: input and output swapped, judged before an effect describes that.
+std::optional<NoModel> exchanged_of(const Measurement& measurement, const Signals& signals,
+                                    const Blocks& blocks, const Model& baseline, int order);
+
 /// METHOD Eq. DG-79: whether the inputs explain anything of what time alone does not, on held-out
 /// blocks; and whether another reading of the recording halves the squared error that is left: two
 /// clocks (Eq. DG-78), input and output swapped, another sign or unit in one of several recordings.

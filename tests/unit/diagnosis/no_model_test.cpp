@@ -38,7 +38,7 @@ TEST(NoModelTest, UnrelatedChannelsClocksAndUnitsAreNamed) {
         std::pair{"a clock 1.5 % slow", "clocks"}, std::pair{"thousandths of newtons", "unit"},
         std::pair{"thousands of newtons", "unit"}, std::pair{"mm/s^2", "unit"},
         std::pair{"another recording's force", "unrelated"},
-        std::pair{"noise for a signal", "unrelated"}}) {
+        std::pair{"noise for a signal", "unrelated"}, std::pair{"columns exchanged", "swapped"}}) {
     const Diagnosis sut = diagnose(measured(named(name)), {});
     EXPECT_EQ(sut.verdict(), "no model") << name;
     ASSERT_TRUE(sut.no_model) << name;
