@@ -69,15 +69,22 @@ std::string wrong_place(const std::filesystem::path& file,
   return "";
 }
 
-// The ends of lines as they were registered: an editor of Windows changes them, and nothing else.
+// The ends of lines as they were registered: an editor of Windows changes them, writes a mark of
+// the byte order, and nothing else.
 std::string with_plain_line_ends(std::string text) {
   std::erase(text, '\r');
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   return text;
 }
 
-// What a desktop leaves in a folder that somebody looked at.
+// What a desktop, an office program, a store or a file system leaves in a folder that somebody
+// looked at.
 bool is_a_desktops(const std::string& name) {
-  return name.starts_with('.') || name == "Thumbs.db" || name == "desktop.ini";
+  constexpr std::array<std::string_view, 8> kNames{
+      "Thumbs.db",    "ehthumbs.db", "desktop.ini", "Icon\r",
+      "$RECYCLE.BIN", "@eaDir",      "lost+found",  "System Volume Information"};
+  return name.starts_with('.') || name.starts_with("~$") || name.ends_with('~') ||
+         std::ranges::find(kNames, name) != kNames.end();
 }
 
 }  // namespace
