@@ -11,18 +11,12 @@
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/detection/detection_limit.hpp"
 #include "services/diagnosis/core/effect_sizes.hpp"
+#include "services/diagnosis/core/first_model.hpp"
 #include "services/diagnosis/core/fitting/noise_model.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
-
-// A static model that is hardly worse is preferred to a dynamic one.
-constexpr double kStaticIsEnough = 1.02;
-constexpr double kSameChannel = 0.95;
-// Of the held-out error.  A mode that its bound hides leaves most of it; less may be what an effect
-// leaves, which freer poles imitate (the shaking table of RESULTS: 0.92).
-constexpr double kWorthSlowPoles = 0.5;
 
 // Half of the 95 % interval of the blocks' mean, Student's t.
 double half_width(const std::vector<double>& of_blocks) {
@@ -59,78 +53,6 @@ Explained explained_by(const HeldOut& before, const HeldOut& after) {
   const double half = half_width(falls);
   const auto root = [](double square) { return std::sqrt(std::max(square, 0.0)); };
   return {root(fall), root(fall - half), root(fall + half)};
-}
-
-double correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  const Eigen::Map<const Eigen::VectorXd> a(x.data(), static_cast<Eigen::Index>(x.size()));
-  const Eigen::Map<const Eigen::VectorXd> b(y.data(), static_cast<Eigen::Index>(y.size()));
-  const Eigen::VectorXd left = a.array() - a.mean();
-  const Eigen::VectorXd right = b.array() - b.mean();
-  return left.dot(right) / std::max(left.norm() * right.norm(), 1e-300);
-}
-
-void check_excitation(const Signals& signals, const std::string& source) {
-  const auto constant = [](const Signal& signal) {
-    return !(signal.deviation > 1e-12 * (std::abs(signal.mean) + 1e-300));
-  };
-  if (constant(signals.output())) {
-    throw ConfigError(source + ", output '" + signals.output().name + "'", "a constant signal",
-                      "one that moves");
-  }
-  for (const Signal& input : signals.inputs()) {
-    if (constant(input)) {
-      throw ConfigError(source + ", input '" + input.name + "'", "a constant signal",
-                        "one that moves: without excitation there is nothing to fit");
-    }
-    if (std::abs(correlation(input.values, signals.output().values)) > 1.0 - 1e-12) {
-      throw ConfigError(source + ", output '" + signals.output().name + "'",
-                        "the input '" + input.name + "' itself, scaled",
-                        "a measured response to it");
-    }
-  }
-}
-
-// Inverse dynamics: one input is the rate of another.
-bool related(const Signals& signals) {
-  const auto& inputs = signals.inputs();
-  for (const Signal& one : inputs) {
-    const std::vector<double> rate = differenced(one.values, signals.stretches());
-    for (const Signal& other : inputs) {
-      if (&other != &one && correlation(rate, other.values) > kSameChannel) return true;
-    }
-  }
-  return false;
-}
-
-Baseline chosen_baseline(const Signals& signals, const Blocks& blocks,
-                         const DiagnoseOptions& options, std::string& name) {
-  if (options.model == ModelClass::kArx) {
-    name = "arx";
-    return fit_baseline(signals, blocks, options.order);
-  }
-  Baseline linear = fit_baseline(signals, blocks, 0);
-  name = "linear";
-  if (options.model == ModelClass::kLinear || related(signals)) return linear;
-  Baseline arx = fit_baseline(signals, blocks, options.order);
-  const double static_rmse = held_out(linear.model, signals, blocks).rmse();
-  if (static_rmse <= kStaticIsEnough * held_out(arx.model, signals, blocks).rmse()) return linear;
-  name = "arx";
-  return arx;
-}
-
-// A body that rings for long, where the bound of its modes holds back the one that was fitted, Eq.
-// DG-66.
-void allow_slow_poles(Diagnosis& diagnosis, Signals& signals, const Blocks& blocks) {
-  const Body& body = diagnosis.baseline.model.body;
-  if (body.order() == 0 || !rings_near_bound(body)) return;
-  const Signals slow = signals.with_slow_poles();
-  Baseline other = fit_baseline(slow, blocks, diagnosis.options.order);
-  const double before = held_out(diagnosis.baseline.model, signals, blocks).rmse();
-  if (!(held_out(other.model, slow, blocks).rmse() < kWorthSlowPoles * before)) return;
-  diagnosis.baseline = std::move(other);
-  signals = slow;
-  diagnosis.notes.emplace_back(
-      "the body rings for long: its modes may decay within half of the recording");
 }
 
 std::string measured_channel(const Effect& effect, const Signals& signals,
@@ -408,8 +330,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   check_excitation(signals, working.source);
   const Blocks blocks = make_blocks(signals);
   step("baseline");
-  diagnosis.baseline = chosen_baseline(signals, blocks, options, diagnosis.model_class);
-  allow_slow_poles(diagnosis, signals, blocks);
+  fit_first_model(diagnosis, signals, blocks);
   if (!diagnosis.no_model) {
     diagnosis.no_model =
         exchanged_of(working, signals, blocks, diagnosis.baseline.model, options.order);

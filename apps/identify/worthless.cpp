@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/identify/worthless.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/alignment.hpp"
+#include "services/diagnosis/core/detection/detection.hpp"
+
+namespace stillhand::identify {
+namespace {
+
+using diagnosis::Measurement;
+
+double vaf_after(const diagnosis::Alignment& by, const identification::Record& fitted,
+                 const IdentifyOptions& options, bool refined = false) {
+  identification::Record moved = fitted;
+  moved.acceleration_m_s2 = diagnosis::moved(fitted.acceleration_m_s2, fitted.rate_hz, by);
+  const auto arx = identification::fit_arx(moved, static_cast<int>(options.config.order));
+  return refined
+             ? identification::refine_output_error(moved, arx.model).heldout.free_run_vaf_percent
+             : arx.heldout.free_run_vaf_percent;
+}
+
+// Eq. DG-81; empty: the future of the input explains no more.
+std::string why_future(const IdentifyOptions& options, const identification::Record& fitted,
+                       double left, bool refined) {
+  if (left < diagnosis::kLeadGate) return {};
+  for (const double lead_s : diagnosis::kLeads_s) {
+    const double vaf = vaf_after({-lead_s, 0.0, 0.0}, fitted, options, refined);
+    if (!(1.0 - 0.01 * vaf < diagnosis::kBetterLead * left)) continue;
+    return fmt::format(
+        "{0} leads {1}: a model that knows {1} {2:g} s ahead leaves {3:.3g} % of {0}, this one "
+        "{4:.3g} %: the columns may be swapped, or {1} comes late",
+        options.output, options.input, lead_s, 100.0 - vaf, 100.0 * left);
+  }
+  return {};
+}
+
+// A limit of the output, which a linear model takes for a smaller gain; empty: it is hardly
+// reached.
+std::string why_clipped(const Measurement& measurement, const IdentifyOptions& options) {
+  for (const diagnosis::SampleFault& fault : measurement.screening) {
+    if (fault.what != "clipped" || fault.share <= diagnosis::kMostClipped ||
+        fault.channel != options.output) {
+      continue;
+    }
+    return fmt::format(
+        "{} is clipped in {:.3g} % of the rows, and the model's gain is wrong by "
+        "about that; diagnose has effects for a limit",
+        fault.channel, 100.0 * fault.share);
+  }
+  return {};
+}
+
+// The response of a motion to the force that it causes differentiates: least squares find no stable
+// one, and far more the other way round.  Empty: not so.
+std::string why_exchanged(const IdentifyOptions& options, const identification::Record& fitted,
+                          double left) {
+  const auto order = static_cast<int>(options.config.order);
+  if (left < diagnosis::kLeadGate || identification::fit_arx(fitted, order).stable) return {};
+  try {
+    const auto other =
+        identification::fit_arx({fitted.rate_hz, fitted.force_n, fitted.acceleration_m_s2}, order);
+    const double left_other = 1.0 - 0.01 * other.heldout.free_run_vaf_percent;
+    if (!other.stable || !(left_other < diagnosis::kBetterLead * left)) return {};
+    return fmt::format(
+        "{0} leaves {2:.3g} % of {1}, and {1} {3:.3g} % of {0}: the columns may be "
+        "swapped",
+        options.output, options.input, 100.0 * left_other, 100.0 * left);
+  } catch (const ConfigError&) {
+    return {};  // the output alone excites nothing
+  }
+}
+
+}  // namespace
+
+double mean_of(const std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  return mean;
+}
+
+double rms_about_mean(const std::vector<double>& values) {
+  const double mean = mean_of(values);
+  double squares = 0.0;
+  for (const double value : values) {
+    squares += (value - mean) * (value - mean) / static_cast<double>(values.size());
+  }
+  return std::sqrt(squares);
+}
+
+std::string why_worthless(const Measurement& measurement, const IdentifyOptions& options,
+                          const identification::Record& fitted, const IdentifyResult& result) {
+  if (std::string why = why_unsound(measurement, {options.input, options.output}); !why.empty()) {
+    return why;
+  }
+  if (std::string why = why_clipped(measurement, options); !why.empty()) return why;
+  const double left = 1.0 - 0.01 * result.model.heldout.free_run_vaf_percent;
+  std::string mass = diagnosis::unlikely_mass(
+      {options.input, result.input_unit, rms_about_mean(fitted.acceleration_m_s2), options.output,
+       result.output_unit, std::sqrt(std::max(0.0, 1.0 - left)) * rms_about_mean(fitted.force_n)});
+  if (left < 0.5 && !mass.empty()) return mass;
+  if (std::string why = why_exchanged(options, fitted, left); !why.empty()) return why;
+  if (std::string why = why_future(options, fitted, left, result.model.refined); !why.empty())
+    return why;
+  if (left <= diagnosis::kAlignmentGate) return {};
+  const diagnosis::Alignment alignment =
+      diagnosis::aligned(fitted.acceleration_m_s2, fitted.force_n, fitted.rate_hz);
+  double most = result.model.heldout.free_run_vaf_percent;
+  diagnosis::Alignment best;
+  for (const diagnosis::Alignment& each : diagnosis::readings(alignment)) {
+    const double vaf = vaf_after(each, fitted, options);
+    if (vaf <= most) continue;
+    most = vaf;
+    best = each;
+  }
+  if (1.0 - 0.01 * most < diagnosis::kBetterClock * left) {
+    return fmt::format("{}: a model after that explains {:.4g} % instead of {:.4g} %",
+                       diagnosis::in_words(best), most, result.model.heldout.free_run_vaf_percent);
+  }
+  if (left <= 1.0 - diagnosis::kLeastShare) return {};
+  return fmt::format(
+      "{} explains {:.3g} % of {} on samples that the fit has not seen, {:g} % or "
+      "more would be something: these channels don't belong together, or no linear model joins "
+      "them",
+      options.input, result.model.heldout.free_run_vaf_percent, options.output,
+      100.0 * diagnosis::kLeastShare);
+}
+
+}  // namespace stillhand::identify
