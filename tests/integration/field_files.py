@@ -328,7 +328,7 @@ spoilt("A2", "acceleration in g as m/s^2", Assumed("units as the columns state",
 
 # A3. Samples
 
-for hz in (10, 20, 25):
+for hz in (25, 20, 10):
     spoilt("A3", f"acceleration held at {hz} Hz", Unusable(("a_y", "held")), acc=held(RATE_HZ // hz))
 spoilt("A3", "force held at 25 Hz", Unusable(("f", "held")), force=held(4))
 spoilt("A3", "both held at 25 Hz", Unusable(("f", "held")), acc=held(4), force=held(4))

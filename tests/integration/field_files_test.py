@@ -186,30 +186,35 @@ class ExperimentFolderTest(unittest.TestCase):
                 status()
 
 
-def outcome(folder, member):
-    """What a person gets, in a few words."""
+def outcome(member):
+    """What a person gets: the kind of it, and more words."""
     if member.needs is None:
-        return "not tried: its writer is not installed"
-    done, result = verb("identify", *member.make(folder), folder / "out.json")
+        return "not tried", "its writer is not installed"
+    with tempfile.TemporaryDirectory() as holder:
+        folder = pathlib.Path(holder)
+        done, result = verb("identify", *member.make(folder), folder / "out.json")
     if result is None:
-        return "refused: " + done.stderr.strip().replace(str(folder) + "/", "").split(": got ", 1)[-1][:150]
+        return "refused with the cause", done.stderr.strip().replace(holder + "/", "").split(": got ", 1)[-1]
     if not result["usable"]:
-        return "not usable: " + result["why"][:150]
+        return "not usable", result["why"]
+    factor = getattr(member.right, "factor", 1.0)
+    percent, degrees = off(result, factor)
     found = sorted({f"{each['channel']} {each['what']}" for each in result["screening"]})
-    percent, degrees = off(result, getattr(member.right, "factor", 1.0))
-    return f"{percent:.2f} %, {degrees:.2f} degrees off" + ("; " + ", ".join(found) if found else "")
+    figures = f"{percent:.2f} %, {degrees:.2f} degrees off"
+    if factor != 1.0:
+        return "not shown by one recording, and said", figures
+    return ("right, and said" if found else "right"), "; ".join([figures, *found])
 
 
 def print_table():
     print("| kind | example | before | now | other members, tried |\n| --- | --- | --- | --- | --- |")
     for kind, before in BEFORE.items():
-        members = [member for member in field_files.MEMBERS if member.kind == kind]
-        cells = []
-        for member in members:
-            with tempfile.TemporaryDirectory() as folder:
-                cells.append((member.name, outcome(pathlib.Path(folder), member).replace("|", "\\|")))
-        others = "; ".join(f"*{name}*: {now}" for name, now in cells[1:])
-        print(f"| {kind} | {cells[0][0]} | {before} | {cells[0][1]} | {others} |")
+        members = [(member.name, *outcome(member)) for member in field_files.MEMBERS if member.kind == kind]
+        (name, how, words), others = members[0], {}
+        for other, of, _ in members[1:]:
+            others.setdefault(of, []).append(other)
+        listed = " ".join(f"**{of}:** " + "; ".join(names) + "." for of, names in others.items())
+        print(f"| {kind} | {name} | {before} | {how}: {words} | {listed} |".replace("\n", " "))
 
 
 if __name__ == "__main__":
