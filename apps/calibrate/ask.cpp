@@ -7,7 +7,7 @@
 
 #include <iostream>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::calibrate {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "services/runtime/process/stop.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::calibrate {
 

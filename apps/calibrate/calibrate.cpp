@@ -13,11 +13,11 @@
 #include "apps/calibrate/calibration_files.hpp"
 #include "apps/calibrate/known_quantity.hpp"
 #include "apps/calibrate/station.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/device_rig/core/calibration_fit.hpp"
-#include "services/device_rig/load_devices.hpp"
-#include "services/runtime/process/remark.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/device_rig/calibration_fit.hpp"
+#include "services/devices/device_rig/load_devices.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::calibrate {
 namespace {

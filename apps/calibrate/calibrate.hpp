@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "services/device_rig/calibration_file.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/files/device_rig/calibration_file.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::calibrate {
 

@@ -10,7 +10,7 @@
 #include "apps/calibrate/calibrate.hpp"
 #include "apps/calibrate/hand_off_steps.hpp"
 #include "apps/calibrate/platform_steps.hpp"
-#include "services/settings/check_name.hpp"
+#include "services/files/settings/check_name.hpp"
 
 namespace stillhand::calibrate {
 namespace {

@@ -8,10 +8,10 @@
 #include <iterator>
 #include <string>
 
-#include "apps/report/result_files.hpp"
-#include "services/settings/edit_text.hpp"
-#include "services/settings/load.hpp"
-#include "services/settings/yaml_text.hpp"
+#include "apps/libraries/report/result_files.hpp"
+#include "services/files/settings/edit_text.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand::calibrate {
 namespace {
@@ -35,7 +35,7 @@ void write_calibrations(const std::filesystem::path& config, const device_rig::C
   // Its numbers must be ones that sensing accepts.
   settings::load_text<sensing::Config>(sensing, "sensing", "calibration");
   const std::string calibrations =
-      "# Written by `stillhand calibrate`; services/device_rig/METHOD.md, Eq. DR-16.\n" +
+      "# Written by `stillhand calibrate`; services/core/device_rig/METHOD.md, Eq. DR-16.\n" +
       settings::yaml_text(all);
   settings::load_text<device_rig::Calibrations>(calibrations, "calibration", "calibration");
   if (numbers.empty()) {

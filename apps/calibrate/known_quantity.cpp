@@ -8,7 +8,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::calibrate {
 namespace {

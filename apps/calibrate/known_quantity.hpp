@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "services/device_rig/calibration_file.hpp"
+#include "services/files/device_rig/calibration_file.hpp"
 
 namespace stillhand::calibrate {
 

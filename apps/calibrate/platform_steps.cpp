@@ -12,11 +12,11 @@
 #include "apps/calibrate/ask.hpp"
 #include "apps/calibrate/calibration_files.hpp"
 #include "apps/calibrate/station.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/device_rig/core/platform_response.hpp"
-#include "services/device_rig/load_devices.hpp"
-#include "services/runtime/process/remark.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/device_rig/platform_response.hpp"
+#include "services/devices/device_rig/load_devices.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::calibrate {
 namespace {
@@ -27,7 +27,7 @@ using device_rig::PlatformResponse;
 constexpr Tick kSettle_ticks = 300;
 constexpr Tick kBrake_ticks = 500;
 constexpr double kScale = 0.2;            // of gains that have to be 1: our own choice
-constexpr double kPeggedMotion_hz = 4.0;  // highest of the pegged trial (apps/session)
+constexpr double kPeggedMotion_hz = 4.0;  // highest of the pegged trial (apps/libraries/session)
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Where the platform stands, while nothing moves it.

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::calibrate {
 namespace {

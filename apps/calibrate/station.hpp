@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "services/device_rig/device_plant.hpp"
-#include "services/sensing/core/conditioner.hpp"
+#include "services/core/sensing/conditioner.hpp"
+#include "services/devices/device_rig/device_plant.hpp"
 
 namespace stillhand::calibrate {
 

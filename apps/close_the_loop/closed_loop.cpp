@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/measurement/grid.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/expects.hpp"
+#include "apps/libraries/measurement/grid.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/expects.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

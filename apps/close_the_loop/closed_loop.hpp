@@ -8,7 +8,7 @@
 
 #include "apps/close_the_loop/session.hpp"
 #include "apps/close_the_loop/verdict.hpp"
-#include "apps/session/protocol.hpp"
+#include "apps/libraries/session/protocol.hpp"
 
 namespace stillhand::close_the_loop {
 

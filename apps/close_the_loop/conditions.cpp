@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "services/statistics/descriptive.hpp"
+#include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

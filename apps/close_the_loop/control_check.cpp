@@ -7,14 +7,14 @@
 #include <span>
 
 #include "apps/close_the_loop/control_conversion.hpp"
-#include "services/cancellation/core/control_model_filter.hpp"
-#include "services/cancellation/core/model_check.hpp"
-#include "services/contract/tick.hpp"
-#include "services/contract/units.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
-#include "services/diagnosis/core/model/interpolation.hpp"
-#include "services/diagnosis/core/other_phases.hpp"
-#include "services/signal/butterworth.hpp"
+#include "services/core/cancellation/control_model_filter.hpp"
+#include "services/core/cancellation/model_check.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/interpolation.hpp"
+#include "services/core/diagnosis/other_phases.hpp"
+#include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -7,13 +7,13 @@
 
 #include "apps/close_the_loop/control_laws.hpp"
 #include "apps/close_the_loop/control_response.hpp"
-#include "services/cancellation/core/model_check.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/contract/units.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/model/loop.hpp"
-#include "services/diagnosis/core/model/model_run.hpp"
+#include "services/core/cancellation/model_check.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/loop.hpp"
+#include "services/core/diagnosis/model/model_run.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

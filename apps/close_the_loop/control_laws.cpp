@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/cancellation/core/value_table.hpp"
+#include "services/core/cancellation/value_table.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

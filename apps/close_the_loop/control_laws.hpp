@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "services/cancellation/core/control_model.hpp"
-#include "services/diagnosis/core/model/effect.hpp"
+#include "services/core/cancellation/control_model.hpp"
+#include "services/core/diagnosis/model/effect.hpp"
 
 /// Parts of the canceller's model that one effect becomes.
 namespace stillhand::close_the_loop {

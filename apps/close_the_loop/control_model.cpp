@@ -10,13 +10,13 @@
 #include "apps/close_the_loop/control_check.hpp"
 #include "apps/close_the_loop/control_conversion.hpp"
 #include "apps/close_the_loop/control_response.hpp"
-#include "services/cancellation/core/model_check.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/diagnosis/core/fitting/baseline.hpp"
-#include "services/diagnosis/core/fitting/fit.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/population/population.hpp"
+#include "services/core/cancellation/model_check.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/diagnosis/fitting/baseline.hpp"
+#include "services/core/diagnosis/fitting/fit.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/population/population.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "services/cancellation/core/control_model.hpp"
-#include "services/diagnosis/core/carried.hpp"
-#include "services/diagnosis/core/signals.hpp"
+#include "services/core/cancellation/control_model.hpp"
+#include "services/core/diagnosis/carried.hpp"
+#include "services/core/diagnosis/signals.hpp"
 
 namespace stillhand::close_the_loop {
 
@@ -53,7 +53,7 @@ cancellation::HandCompliance average_hand();
 /// Converts a diagnosed model to the control rate, METHOD Eq. CL-1 to CL-4: the body's poles by
 /// z' = z^(rate/1000 Hz), each numerator by least squares on its response, springs inside the body,
 /// paths next to it and waves unchanged.  What becomes of an effect is its body_role()
-/// (services/diagnosis/core/model/control_role.hpp).  Then each effect runs next to the diagnosed
+/// (services/core/diagnosis/model/control_role.hpp).  Then each effect runs next to the diagnosed
 /// one, Eq. CL-7.  Without those that differ too much, and a spring that the canceller refuses, the
 /// model is fitted and converted again: the body that was fitted next to an effect is not that of
 /// a model without it.

@@ -7,17 +7,17 @@
 #include <optional>
 
 #include "apps/close_the_loop/control_laws.hpp"
-#include "services/cancellation/core/control_model_filter.hpp"
-#include "services/cancellation/core/model_check.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/contract/units.hpp"
-#include "services/diagnosis/core/fitting/modes.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
-#include "services/identification/core/polynomial.hpp"
-#include "services/identification/core/rate_conversion.hpp"
-#include "services/signal/decompositions.hpp"
+#include "services/core/cancellation/control_model_filter.hpp"
+#include "services/core/cancellation/model_check.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/identification/polynomial.hpp"
+#include "services/core/identification/rate_conversion.hpp"
+#include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

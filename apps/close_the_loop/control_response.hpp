@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/close_the_loop/control_model.hpp"
-#include "services/diagnosis/core/model/model.hpp"
+#include "services/core/diagnosis/model/model.hpp"
 
 /// A diagnosed model's linear parts at the control rate, METHOD Eq. CL-1 and CL-2.
 namespace stillhand::close_the_loop {

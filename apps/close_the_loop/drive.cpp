@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/measurement/read.hpp"
-#include "services/contract/expects.hpp"
-#include "services/contract/tick.hpp"
-#include "services/signal/butterworth.hpp"
+#include "apps/libraries/measurement/read.hpp"
+#include "services/core/contract/expects.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

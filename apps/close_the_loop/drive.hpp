@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "services/diagnosis/core/diagnose.hpp"
-#include "services/recording/core/recording.hpp"
-#include "services/rig/core/body_config.hpp"
-#include "services/rig/core/motor.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/recording/recording.hpp"
+#include "services/core/rig/body_config.hpp"
+#include "services/core/rig/motor.hpp"
 
 namespace stillhand::close_the_loop {
 

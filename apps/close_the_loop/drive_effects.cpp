@@ -2,7 +2,7 @@
 #include "apps/close_the_loop/drive_effects.hpp"
 
 #include "apps/close_the_loop/control_laws.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 
 namespace stillhand::close_the_loop {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/close_the_loop/control_model.hpp"
-#include "services/diagnosis/core/model/effect.hpp"
+#include "services/core/diagnosis/model/effect.hpp"
 
 namespace stillhand::close_the_loop {
 

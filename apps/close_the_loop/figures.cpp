@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "apps/close_the_loop/output.hpp"
-#include "apps/measurement/grid.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
-#include "services/diagnosis/core/working_set.hpp"
+#include "apps/libraries/measurement/grid.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/measurement/written_trial.hpp"
-#include "apps/session/results.hpp"
+#include "apps/libraries/measurement/written_trial.hpp"
+#include "apps/libraries/session/results.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "apps/report/or_null.hpp"
-#include "apps/report/plot/figure_table.hpp"
-#include "apps/report/text.hpp"
-#include "apps/session/paper_table.hpp"
-#include "services/rig/sealed_file.hpp"
+#include "apps/libraries/report/or_null.hpp"
+#include "apps/libraries/report/plot/figure_table.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/session/paper_table.hpp"
+#include "services/files/rig/sealed_file.hpp"
 #include "version.hpp"
 
 namespace stillhand::close_the_loop {

@@ -7,8 +7,8 @@
 
 #include "apps/close_the_loop/closed_loop.hpp"
 #include "apps/close_the_loop/conditions.hpp"
-#include "apps/report/page.hpp"
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/page.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 
 namespace stillhand::close_the_loop {
 

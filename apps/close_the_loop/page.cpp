@@ -2,8 +2,8 @@
 // The report: what the paper's model lacked, and how the hand tracks with each model.
 #include "apps/close_the_loop/output.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/report/text.hpp"
-#include "apps/session/paper_table.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/session/paper_table.hpp"
 #include "version.hpp"
 
 namespace stillhand::close_the_loop {

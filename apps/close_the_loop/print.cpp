@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "apps/close_the_loop/output.hpp"
-#include "apps/report/text.hpp"
-#include "apps/session/paper_table.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/session/paper_table.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
-#include "services/contract/expects.hpp"
-#include "services/runtime/process/run_jobs.hpp"
+#include "services/core/contract/expects.hpp"
+#include "services/system/process/run_jobs.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

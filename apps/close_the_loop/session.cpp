@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/close_the_loop/session.hpp"
 
-#include "services/contract/config_error.hpp"
-#include "services/rig/sealed_file.hpp"
-#include "services/signal/reference.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/reference.hpp"
+#include "services/files/rig/sealed_file.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/session/in_process.hpp"
-#include "apps/session/protocol.hpp"
-#include "services/cancellation/parts/adaptive_gain.hpp"
-#include "services/identification/core/identifier.hpp"
+#include "apps/libraries/session/in_process.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "services/core/cancellation/parts/adaptive_gain.hpp"
+#include "services/core/identification/identifier.hpp"
 
 namespace stillhand::close_the_loop {
 

@@ -7,9 +7,9 @@
 
 #include "apps/close_the_loop/drive_effects.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/core/working_set.hpp"
-#include "services/diagnosis/effects/delay.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/diagnosis/effects/delay.hpp"
+#include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

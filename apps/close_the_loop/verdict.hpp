@@ -7,8 +7,8 @@
 
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/close_the_loop/drive.hpp"
-#include "services/diagnosis/core/diagnose.hpp"
-#include "services/recording/core/recording.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/recording/recording.hpp"
 
 namespace stillhand::close_the_loop {
 

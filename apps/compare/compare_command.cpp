@@ -13,9 +13,9 @@
 #include "apps/compare/core/comparison.hpp"
 #include "apps/compare/findings.hpp"
 #include "apps/compare/summary_file.hpp"
-#include "apps/report/staged_folder.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/settings/check_name.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/check_name.hpp"
 
 namespace stillhand::compare {
 namespace {

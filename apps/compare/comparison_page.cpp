@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "apps/compare/findings.hpp"
-#include "apps/report/command_line.hpp"
-#include "apps/report/page.hpp"
-#include "apps/report/plot/draw.hpp"
-#include "apps/session/core/conditions.hpp"
+#include "apps/libraries/report/command_line.hpp"
+#include "apps/libraries/report/page.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/session/core/conditions.hpp"
 #include "version.hpp"
 
 namespace stillhand::compare {

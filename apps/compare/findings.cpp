@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/report/or_null.hpp"
+#include "apps/libraries/report/or_null.hpp"
 
 namespace stillhand::compare {
 namespace {

@@ -8,8 +8,8 @@
 #include <set>
 #include <string>
 
-#include "services/contract/config_error.hpp"
-#include "services/settings/json_entry.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/json_entry.hpp"
 
 namespace stillhand::compare {
 namespace {

@@ -13,13 +13,13 @@
 #include "apps/dashboard/remote.hpp"
 #include "apps/dashboard/view/snapshot_json.hpp"
 #include "apps/dashboard/view/view_json.hpp"
-#include "services/cancellation/core/config.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/cpu_share.hpp"
-#include "services/runtime/process/real_time.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/cancellation/config.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/cpu_share.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::dashboard {
 

@@ -7,7 +7,7 @@
 
 #include "apps/dashboard/feed/live_bus.hpp"
 #include "apps/dashboard/server/http_server.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::dashboard {
 

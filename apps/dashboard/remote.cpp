@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "services/runtime/process/clock.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::dashboard {
 

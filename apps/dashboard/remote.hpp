@@ -10,7 +10,7 @@
 #include "apps/dashboard/server/routes.hpp"
 #include "idl/recording.h"
 #include "idl/session.h"
-#include "services/runtime/bus/bus.hpp"
+#include "services/bus/bus.hpp"
 
 namespace stillhand::dashboard {
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "services/runtime/process/real_time.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::deploy {
 namespace {

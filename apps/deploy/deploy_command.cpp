@@ -14,10 +14,10 @@
 #include "apps/deploy/generate.hpp"
 #include "apps/deploy/machine.hpp"
 #include "apps/deploy/real_time_checks.hpp"
-#include "apps/report/result_files.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/shipped.hpp"
-#include "services/settings/check_name.hpp"
+#include "apps/libraries/report/result_files.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/system/process/shipped.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -6,7 +6,7 @@
 #include <list>
 
 #include "apps/deploy/host_files.hpp"
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 
 namespace stillhand::deploy {
 namespace {

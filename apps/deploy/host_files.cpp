@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "apps/deploy/ports.hpp"
-#include "services/runtime/process/real_time.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::deploy {
 

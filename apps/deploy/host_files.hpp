@@ -24,8 +24,9 @@ GeneratedFile sysctl_of(const Inventory& inventory, const Host& host, const Buff
 /// once.  Nothing where the host runs no rig of devices.
 std::optional<GeneratedFile> device_rules_of(const Inventory& inventory, const Host& host);
 
-/// Priority of the control loop for iiod, which stands in its path (services/device_rig/DEVICES.md,
-/// "IIO devices").  Nothing where the host runs no rig of devices.
+/// Priority of the control loop for iiod, which stands in its path
+/// (services/devices/device_rig/DEVICES.md, "IIO devices").  Nothing where the host runs no rig of
+/// devices.
 std::optional<GeneratedFile> iiod_priority_of(const Inventory& inventory, const Host& host);
 
 }  // namespace stillhand::deploy

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "services/contract/expects.hpp"
+#include "services/core/contract/expects.hpp"
 
 namespace stillhand::deploy {
 

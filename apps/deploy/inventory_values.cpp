@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::deploy {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/settings/section.hpp"
+#include "services/files/settings/section.hpp"
 
 namespace stillhand::deploy {
 

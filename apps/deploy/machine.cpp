@@ -21,9 +21,9 @@
 #include "apps/deploy/generated_file.hpp"
 #include "apps/deploy/ports.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/device_rig/load_devices.hpp"
-#include "services/runtime/bus/identity.hpp"
+#include "services/bus/identity.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/devices/device_rig/load_devices.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -9,8 +9,8 @@
 #include "apps/deploy/inventory_values.hpp"
 #include "apps/deploy/ports.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/settings/nearest.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/nearest.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/deploy/inventory.hpp"
-#include "services/settings/section.hpp"
+#include "services/files/settings/section.hpp"
 
 namespace stillhand::deploy {
 

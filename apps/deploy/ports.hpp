@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "services/runtime/process/domain.hpp"
+#include "services/system/process/domain.hpp"
 
 namespace stillhand::deploy {
 

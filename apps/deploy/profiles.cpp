@@ -5,8 +5,8 @@
 
 #include "apps/deploy/generated_file.hpp"
 #include "apps/deploy/ports.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -8,10 +8,10 @@
 #include "apps/deploy/inventory.hpp"
 #include "apps/deploy/inventory_values.hpp"
 #include "apps/deploy/placements.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/domain.hpp"
-#include "services/runtime/process/shipped.hpp"
-#include "services/settings/section.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/section.hpp"
+#include "services/system/process/domain.hpp"
+#include "services/system/process/shipped.hpp"
 
 namespace stillhand::deploy {
 namespace {

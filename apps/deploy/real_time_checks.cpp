@@ -12,9 +12,9 @@
 #include <set>
 #include <thread>
 
-#include "services/contract/tick.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// systemd units.  Each life sign (services/runtime/reporting), ten times a second, feeds the
+// systemd units.  Each life sign (services/bus/reporting), ten times a second, feeds the
 // watchdog.  systemd restarts a process that hangs, long after the interlock has opened.
 #include <fmt/format.h>
 
 #include "apps/deploy/host_files.hpp"
-#include "services/runtime/process/real_time.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::deploy {
 namespace {

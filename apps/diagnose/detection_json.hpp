@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/diagnosis/core/detection/detection.hpp"
+#include "services/core/diagnosis/detection/detection.hpp"
 
 namespace stillhand::diagnose {
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "services/settings/check_number.hpp"
+#include "services/files/settings/check_number.hpp"
 
 namespace stillhand::diagnose {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 
 namespace CLI {
 class App;

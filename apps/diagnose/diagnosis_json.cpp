@@ -9,9 +9,9 @@
 
 #include "apps/diagnose/detection_json.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/measurement/screening_json.hpp"
-#include "apps/report/or_null.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "apps/libraries/measurement/screening_json.hpp"
+#include "apps/libraries/report/or_null.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 
 namespace stillhand::diagnose {
 

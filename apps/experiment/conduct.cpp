@@ -9,8 +9,8 @@
 
 #include "apps/experiment/session_script.hpp"
 #include "apps/lab/lab.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::experiment {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "apps/experiment/folder.hpp"
 #include "apps/lab/lab_options.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::experiment {
 

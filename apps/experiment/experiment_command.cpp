@@ -11,15 +11,15 @@
 
 #include "apps/experiment/conduct.hpp"
 #include "apps/experiment/export/export_command.hpp"
-#include "apps/experiment/file/experiment_file.hpp"
 #include "apps/experiment/report_command.hpp"
 #include "apps/experiment/status.hpp"
 #include "apps/experiment/unblind.hpp"
-#include "apps/session/instructions.hpp"
-#include "apps/session/protocol.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/remark.hpp"
-#include "services/settings/check_name.hpp"
+#include "apps/libraries/experiment/file/experiment_file.hpp"
+#include "apps/libraries/session/instructions.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::experiment {
 namespace {

@@ -7,13 +7,13 @@
 #include <set>
 #include <stdexcept>
 
-#include "apps/experiment/file/experiment_file.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/recording/of_experiment.hpp"
-#include "services/rig/digest.hpp"
+#include "apps/libraries/experiment/file/experiment_file.hpp"
+#include "services/bus/recording/of_experiment.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/files/digest/digest.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::experiment {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/experiment/core/plan.hpp"
-#include "apps/experiment/file/journal.hpp"
+#include "apps/libraries/experiment/core/plan.hpp"
+#include "apps/libraries/experiment/file/journal.hpp"
 
 namespace stillhand::experiment {
 

@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "apps/experiment/folder.hpp"
-#include "apps/report/command_line.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/study/plan_options.hpp"
 #include "apps/study/study_runs.hpp"
-#include "services/settings/check_name.hpp"
+#include "services/files/settings/check_name.hpp"
 
 namespace stillhand::experiment {
 namespace {

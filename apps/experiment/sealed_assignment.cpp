@@ -6,9 +6,9 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "services/contract/config_error.hpp"
-#include "services/rig/digest.hpp"
-#include "services/settings/json_entry.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/digest/digest.hpp"
+#include "services/files/settings/json_entry.hpp"
 
 namespace stillhand::experiment {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/experiment/core/plan.hpp"
+#include "apps/libraries/experiment/core/plan.hpp"
 
 namespace stillhand::experiment {
 

@@ -9,8 +9,8 @@
 
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/lab/control_model.hpp"
-#include "apps/measurement/written_trial.hpp"
-#include "apps/session/instructions.hpp"
+#include "apps/libraries/measurement/written_trial.hpp"
+#include "apps/libraries/session/instructions.hpp"
 
 namespace stillhand::experiment {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/experiment/folder.hpp"
 #include "apps/lab/lab_options.hpp"
 #include "apps/lab/live_trials.hpp"
-#include "services/cancellation/core/control_model.hpp"
+#include "services/core/cancellation/control_model.hpp"
 
 namespace stillhand::experiment {
 

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <set>
 
-#include "apps/experiment/file/standing.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
+#include "apps/libraries/experiment/file/standing.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::experiment {
 namespace {

@@ -9,10 +9,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "apps/experiment/file/standing.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
+#include "apps/libraries/experiment/file/standing.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::experiment {
 namespace {

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "apps/session/session_recording.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/sensing/core/conditioner.hpp"
-#include "services/signal/butterworth.hpp"
+#include "apps/libraries/session/session_recording.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/sensing/conditioner.hpp"
+#include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::identify {
 namespace {

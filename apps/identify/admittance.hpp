@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/plot/figure.hpp"
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/admittance/core/relation.hpp"
-#include "services/admittance/core/session_excitation.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/admittance/relation.hpp"
+#include "services/core/admittance/session_excitation.hpp"
 
 namespace stillhand::identify {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "apps/identify/admittance.hpp"
-#include "apps/report/or_null.hpp"
+#include "apps/libraries/report/or_null.hpp"
 
 namespace stillhand::identify {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "apps/identify/worthless.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/identification/core/excitation_check.hpp"
-#include "services/identification/core/paper_preprocessing.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/identification/excitation_check.hpp"
+#include "services/core/identification/paper_preprocessing.hpp"
 
 namespace stillhand::identify {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "services/diagnosis/core/measurement.hpp"
-#include "services/identification/core/frequency_response.hpp"
-#include "services/identification/core/identifier.hpp"
-#include "services/signal/spectrum.hpp"
+#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/identification/frequency_response.hpp"
+#include "services/core/identification/identifier.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::identify {
 

@@ -10,13 +10,13 @@
 #include "apps/identify/admittance.hpp"
 #include "apps/identify/identify.hpp"
 #include "apps/identify/identify_output.hpp"
-#include "apps/measurement/read_options.hpp"
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/result_files.hpp"
-#include "apps/report/text.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/identification/model_file.hpp"
-#include "services/settings/check_name.hpp"
+#include "apps/libraries/measurement/read_options.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/result_files.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/identification/model_file.hpp"
+#include "services/files/settings/check_name.hpp"
 
 namespace stillhand::identify {
 namespace {

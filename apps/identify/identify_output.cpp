@@ -8,8 +8,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "apps/measurement/screening_json.hpp"
-#include "services/signal/difference_model.hpp"
+#include "apps/libraries/measurement/screening_json.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::identify {
 namespace {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/core/alignment.hpp"
-#include "services/diagnosis/core/detection/detection.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/diagnosis/alignment.hpp"
+#include "services/core/diagnosis/detection/detection.hpp"
 
 namespace stillhand::identify {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/identify/identify.hpp"
-#include "services/identification/core/record.hpp"
+#include "services/core/identification/record.hpp"
 
 namespace stillhand::identify {
 

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "services/cancellation/parts/linear_arm.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/settings/json_entry.hpp"
+#include "services/core/cancellation/parts/linear_arm.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/files/settings/json_entry.hpp"
 
 namespace stillhand::lab {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "services/admittance/core/arm_model.hpp"
+#include "services/core/admittance/arm_model.hpp"
 
 namespace stillhand::lab {
 

@@ -11,17 +11,17 @@
 
 #include "apps/lab/control_model.hpp"
 #include "apps/lab/core/prompt.hpp"
-#include "services/cancellation/core/config.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
-#include "services/cancellation/parts/recipe.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/device_rig/load_devices.hpp"
-#include "services/motion/core/motion_generator.hpp"
-#include "services/motion/ride_file.hpp"
-#include "services/runtime/process/domain.hpp"
-#include "services/settings/load.hpp"
-#include "services/vehicle/vehicle_settings.hpp"
+#include "services/core/cancellation/config.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/cancellation/parts/recipe.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/motion/motion_generator.hpp"
+#include "services/core/vehicle/vehicle_settings.hpp"
+#include "services/devices/device_rig/load_devices.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/messages/motion/ride_file.hpp"
+#include "services/system/process/domain.hpp"
 
 namespace stillhand::lab {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "idl/topics.hpp"
-#include "services/contract/time_difference.hpp"
-#include "services/runtime/clock_answer.hpp"
-#include "services/runtime/process/real_time.hpp"
+#include "services/bus/clock_answer.hpp"
+#include "services/core/contract/time_difference.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::lab {
 namespace {

@@ -8,12 +8,12 @@
 #include <thread>
 
 #include "idl/clock.h"
-#include "services/clock/core/clock_comparison.hpp"
-#include "services/runtime/service.hpp"
+#include "services/bus/service.hpp"
+#include "services/core/clock/clock_comparison.hpp"
 
 namespace stillhand::lab {
 
-/// Compares every process's clock with this one's over the bus (services/clock), publishes the
+/// Compares every process's clock with this one's over the bus (services/core/clock), publishes the
 /// offsets each second, and reports jumps and drifts as events.  Makes its endpoints: construct it
 /// before the bus starts.
 class Clocks {

@@ -5,11 +5,11 @@
 
 #include "apps/lab/core/seen.hpp"
 #include "apps/lab/core/stage.hpp"
-#include "apps/session/marks.hpp"
-#include "apps/session/protocol.hpp"
+#include "apps/libraries/session/marks.hpp"
+#include "apps/libraries/session/protocol.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
-#include "services/runtime/bus/source.hpp"
+#include "services/bus/source.hpp"
 
 /// The conductor's core to bus messages and back.  Pure.
 namespace stillhand::lab {

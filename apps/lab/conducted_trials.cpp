@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "apps/lab/lost_service.hpp"
-#include "services/cancellation/core/part.hpp"
-#include "services/identification/codec.hpp"
+#include "services/core/cancellation/part.hpp"
+#include "services/messages/identification/codec.hpp"
 
 namespace stillhand::lab {
 namespace {

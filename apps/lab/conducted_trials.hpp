@@ -13,8 +13,8 @@
 #include "apps/lab/processes.hpp"
 #include "apps/lab/rehearsal.hpp"
 #include "apps/lab/stop_key.hpp"
-#include "apps/report/progress.hpp"
-#include "services/runtime/service.hpp"
+#include "apps/libraries/report/progress.hpp"
+#include "services/bus/service.hpp"
 
 namespace stillhand::lab {
 

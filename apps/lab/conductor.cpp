@@ -14,9 +14,9 @@
 #include "apps/lab/core/rest.hpp"
 #include "apps/lab/core/session_begin.hpp"
 #include "apps/lab/core/trial_run.hpp"
-#include "services/cancellation/codec.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/sources_codec.hpp"
+#include "services/bus/sources_codec.hpp"
+#include "services/messages/cancellation/codec.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::lab {
 namespace {

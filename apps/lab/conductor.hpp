@@ -13,13 +13,13 @@
 #include "apps/lab/core/stage.hpp"
 #include "apps/lab/core/trouble.hpp"
 #include "apps/lab/processes.hpp"
-#include "apps/session/protocol.hpp"
-#include "apps/session/trial_outcome.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "apps/libraries/session/trial_outcome.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
-#include "services/cancellation/core/control_model.hpp"
-#include "services/runtime/emergency_stop.hpp"
-#include "services/runtime/service.hpp"
+#include "services/bus/emergency_stop.hpp"
+#include "services/bus/service.hpp"
+#include "services/core/cancellation/control_model.hpp"
 
 namespace stillhand::lab {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/control_model.hpp"
 
-#include "services/cancellation/control_model_file.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/settings/load.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/files/settings/load.hpp"
 
 namespace stillhand::lab {
 

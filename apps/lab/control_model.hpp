@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "services/cancellation/core/control_model.hpp"
+#include "services/core/cancellation/control_model.hpp"
 
 namespace stillhand::lab {
 

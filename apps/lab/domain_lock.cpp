@@ -10,8 +10,8 @@
 #include <cstddef>
 #include <string>
 
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/domain.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/domain.hpp"
 
 namespace stillhand::lab {
 namespace {

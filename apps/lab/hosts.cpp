@@ -13,9 +13,9 @@
 #include "apps/lab/keys.hpp"
 #include "apps/lab/lab_options.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::lab {
 namespace {

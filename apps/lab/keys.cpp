@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "apps/lab/remote.hpp"
-#include "services/runtime/bus/identity.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "services/bus/identity.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::lab {
 

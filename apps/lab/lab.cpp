@@ -18,12 +18,12 @@
 #include "apps/lab/subject_settings.hpp"
 #include "apps/lab/summary.hpp"
 #include "apps/lab/undeclared_effect.hpp"
-#include "apps/session/instructions.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/rig/sealed_file.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "apps/libraries/session/instructions.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/rig/sealed_file.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::lab {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "apps/lab/lab_options.hpp"
 #include "apps/lab/live_trials.hpp"
-#include "apps/session/trial_outcome.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "apps/libraries/session/trial_outcome.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::lab {
 

@@ -17,9 +17,9 @@
 
 #include "apps/lab/arms_file.hpp"
 #include "apps/lab/lab.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/settings/check_name.hpp"
-#include "services/settings/repeatable.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/files/settings/repeatable.hpp"
 
 namespace stillhand::lab {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/lab_options.hpp"
 
-#include "services/runtime/process/shipped.hpp"
+#include "services/system/process/shipped.hpp"
 
 namespace stillhand::lab {
 

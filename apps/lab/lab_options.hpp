@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/session/protocol.hpp"
-#include "services/recording/keep_options.hpp"
-#include "services/recording/of_experiment.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "services/bus/recording/keep_options.hpp"
+#include "services/bus/recording/of_experiment.hpp"
 
 namespace stillhand::lab {
 

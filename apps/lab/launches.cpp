@@ -6,11 +6,11 @@
 #include <string_view>
 
 #include "idl/processes.hpp"
-#include "services/device_rig/core/parts.hpp"
-#include "services/device_rig/core/parts_note.hpp"
-#include "services/recording/keep_options.hpp"
-#include "services/recording/of_experiment.hpp"
-#include "services/settings/load.hpp"
+#include "services/bus/recording/keep_options.hpp"
+#include "services/bus/recording/of_experiment.hpp"
+#include "services/core/device_rig/parts.hpp"
+#include "services/core/device_rig/parts_note.hpp"
+#include "services/files/settings/load.hpp"
 
 namespace stillhand::lab {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "apps/lab/core/prompt.hpp"
 #include "apps/lab/core/requests.hpp"
-#include "apps/session/trial_outcome.hpp"
-#include "services/cancellation/core/control_model.hpp"
-#include "services/identification/core/identifier.hpp"
+#include "apps/libraries/session/trial_outcome.hpp"
+#include "services/core/cancellation/control_model.hpp"
+#include "services/core/identification/identifier.hpp"
 
 namespace stillhand::lab {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "apps/lab/processes.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/bus/bus.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::lab {
 

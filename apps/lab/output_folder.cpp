@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/plot/figure_table.hpp"
+#include "apps/libraries/report/plot/figure_table.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::lab {
 namespace {

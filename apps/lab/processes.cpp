@@ -16,8 +16,8 @@
 #include <system_error>
 #include <utility>
 
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/clock.hpp"
 
 extern char** environ;
 

@@ -5,11 +5,11 @@
 
 #include <optional>
 
-#include "services/admittance/core/session_excitation.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/display/core/tracking_display.hpp"
-#include "services/motion/core/motion_generator.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/admittance/session_excitation.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/display/tracking_display.hpp"
+#include "services/core/motion/motion_generator.hpp"
+#include "services/files/settings/load.hpp"
 
 namespace stillhand::lab {
 namespace {

@@ -6,9 +6,9 @@
 #include <map>
 #include <vector>
 
-#include "apps/session/protocol.hpp"
-#include "services/motion/core/motion_trajectory.hpp"
-#include "services/motion/ride_file.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "services/core/motion/motion_trajectory.hpp"
+#include "services/messages/motion/ride_file.hpp"
 
 namespace stillhand::lab {
 

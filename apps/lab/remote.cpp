@@ -8,8 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::lab {
 namespace {

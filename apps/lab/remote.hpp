@@ -8,7 +8,7 @@
 
 #include "apps/deploy/inventory.hpp"
 #include "apps/lab/processes.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::lab {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/report/plot/draw.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
 
 namespace stillhand::lab {
 namespace {

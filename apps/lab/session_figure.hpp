@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "apps/report/plot/draw.hpp"
-#include "apps/session/results.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/session/results.hpp"
 
 namespace stillhand::lab {
 

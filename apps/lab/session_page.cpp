@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "apps/lab/summary_json.hpp"
-#include "apps/report/command_line.hpp"
-#include "apps/report/provenance.hpp"
-#include "apps/report/text.hpp"
-#include "apps/session/paper_table.hpp"
+#include "apps/libraries/report/command_line.hpp"
+#include "apps/libraries/report/provenance.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/session/paper_table.hpp"
 #include "version.hpp"
 
 namespace stillhand::lab {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "apps/lab/lab_options.hpp"
-#include "apps/report/page.hpp"
-#include "apps/session/results.hpp"
+#include "apps/libraries/report/page.hpp"
+#include "apps/libraries/session/results.hpp"
 
 namespace stillhand::lab {
 

@@ -13,8 +13,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::lab {
 namespace {

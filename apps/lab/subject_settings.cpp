@@ -4,14 +4,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "services/display/core/tracking_display.hpp"
-#include "services/human_operator/core/subject_config.hpp"
-#include "services/population/population.hpp"
-#include "services/population/task.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/settings/load.hpp"
-#include "services/settings/yaml_text.hpp"
+#include "services/core/display/tracking_display.hpp"
+#include "services/core/human_operator/subject_config.hpp"
+#include "services/core/population/population.hpp"
+#include "services/core/population/task.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand::lab {
 namespace {

@@ -10,13 +10,13 @@
 #include "apps/lab/session_figure.hpp"
 #include "apps/lab/session_page.hpp"
 #include "apps/lab/summary_json.hpp"
-#include "apps/report/text.hpp"
-#include "services/device_rig/core/parts.hpp"
-#include "services/identification/codec.hpp"
-#include "services/identification/model_file.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/runtime/process/remark.hpp"
-#include "services/settings/load.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "services/core/device_rig/parts.hpp"
+#include "services/files/identification/model_file.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/messages/identification/codec.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::lab {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/lab/lab.hpp"
-#include "apps/session/trial_outcome.hpp"
+#include "apps/libraries/session/trial_outcome.hpp"
 
 namespace stillhand::lab {
 

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <functional>
 
-#include "apps/report/or_null.hpp"
-#include "apps/session/misses_json.hpp"
-#include "apps/session/paper_table.hpp"
-#include "services/device_rig/core/parts.hpp"
-#include "services/settings/load.hpp"
-#include "services/vehicle/vehicle_settings.hpp"
+#include "apps/libraries/report/or_null.hpp"
+#include "apps/libraries/session/misses_json.hpp"
+#include "apps/libraries/session/paper_table.hpp"
+#include "services/core/device_rig/parts.hpp"
+#include "services/core/vehicle/vehicle_settings.hpp"
+#include "services/files/settings/load.hpp"
 #include "version.hpp"
 
 namespace stillhand::lab {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "apps/lab/lab_options.hpp"
-#include "apps/session/paper_table.hpp"
-#include "apps/session/results.hpp"
-#include "apps/session/trial_outcome.hpp"
+#include "apps/libraries/session/paper_table.hpp"
+#include "apps/libraries/session/results.hpp"
+#include "apps/libraries/session/trial_outcome.hpp"
 
 namespace stillhand::lab {
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "apps/lab/processes.hpp"
-#include "services/rig/sealed_file.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/files/rig/sealed_file.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::lab {
 

@@ -12,14 +12,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/result_files.hpp"
-#include "apps/session/clock_line.hpp"
-#include "apps/session/misses.hpp"
-#include "apps/session/misses_json.hpp"
-#include "apps/session/session_recording.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/result_files.hpp"
+#include "apps/libraries/session/clock_line.hpp"
+#include "apps/libraries/session/misses.hpp"
+#include "apps/libraries/session/misses_json.hpp"
+#include "apps/libraries/session/session_recording.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::misses {
 namespace {

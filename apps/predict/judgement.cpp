@@ -8,8 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "apps/measurement/screening_json.hpp"
-#include "apps/report/or_null.hpp"
+#include "apps/libraries/measurement/screening_json.hpp"
+#include "apps/libraries/report/or_null.hpp"
 
 namespace stillhand::predict {
 namespace {

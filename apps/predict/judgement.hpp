@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/libraries/report/plot/figure.hpp"
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/predict/predict.hpp"
-#include "apps/report/plot/figure.hpp"
-#include "apps/report/provenance.hpp"
-#include "services/diagnosis/core/measurement.hpp"
+#include "services/core/diagnosis/measurement.hpp"
 
 /// How right a prediction is, where the recording holds the output.
 namespace stillhand::predict {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/libraries/report/excerpt.hpp"
 #include "apps/predict/judgement.hpp"
-#include "apps/report/excerpt.hpp"
 
 namespace stillhand::predict {
 namespace {

@@ -9,10 +9,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
-#include "services/diagnosis/core/working_set.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::predict {
 namespace {

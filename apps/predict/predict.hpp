@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "services/diagnosis/core/carried.hpp"
-#include "services/diagnosis/core/measurement.hpp"
-#include "services/recording/core/recording.hpp"
+#include "services/core/diagnosis/carried.hpp"
+#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/recording/recording.hpp"
 
 namespace stillhand::predict {
 

@@ -7,17 +7,17 @@
 #include <memory>
 #include <optional>
 
-#include "apps/measurement/read_options.hpp"
+#include "apps/libraries/measurement/read_options.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/provenance.hpp"
+#include "apps/libraries/report/result_files.hpp"
 #include "apps/predict/judgement.hpp"
 #include "apps/predict/predict.hpp"
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/provenance.hpp"
-#include "apps/report/result_files.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/model_file.hpp"
-#include "services/recording/core/csv.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/settings/check_name.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/csv.hpp"
+#include "services/files/diagnosis/model_file.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/files/settings/check_name.hpp"
 
 namespace stillhand::predict {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::record {
 

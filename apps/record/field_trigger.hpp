@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "services/recording/core/messages/message_columns.hpp"
-#include "services/runtime/bus/tap.hpp"
+#include "services/bus/tap.hpp"
+#include "services/core/recording/messages/message_columns.hpp"
 
 namespace stillhand::record {
 

@@ -16,13 +16,13 @@
 #include "idl/cdr.hpp"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "services/recording/bus_recording.hpp"
-#include "services/recording/core/messages/omgidl.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/recording/session_texts.hpp"
-#include "services/runtime/bus/identity.hpp"
-#include "services/runtime/bus/tap.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/bus/identity.hpp"
+#include "services/bus/recording/bus_recording.hpp"
+#include "services/bus/recording/session_texts.hpp"
+#include "services/bus/tap.hpp"
+#include "services/core/recording/messages/omgidl.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::record {
 namespace {

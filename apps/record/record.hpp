@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "services/recording/core/topic_filter.hpp"
-#include "services/recording/tape.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/bus/recording/tape.hpp"
+#include "services/core/recording/topic_filter.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::record {
 

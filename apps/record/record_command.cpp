@@ -6,14 +6,14 @@
 #include <memory>
 
 #include "apps/record/record.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/keep_options.hpp"
-#include "services/recording/within.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
-#include "services/runtime/process/shipped.hpp"
-#include "services/settings/check_name.hpp"
-#include "services/settings/repeatable.hpp"
+#include "services/bus/recording/keep_options.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/within.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/files/settings/repeatable.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
+#include "services/system/process/shipped.hpp"
 
 namespace stillhand::record {
 namespace {

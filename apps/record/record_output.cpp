@@ -8,7 +8,7 @@
 #include <map>
 
 #include "idl/topics.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::record {
 namespace {

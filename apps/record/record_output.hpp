@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "services/recording/bus_recording.hpp"
-#include "services/runtime/bus/tap.hpp"
+#include "services/bus/recording/bus_recording.hpp"
+#include "services/bus/tap.hpp"
 
 namespace stillhand::record {
 

@@ -5,8 +5,8 @@
 
 #include "apps/record/record_output.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::record {
 namespace {

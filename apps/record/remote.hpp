@@ -6,8 +6,8 @@
 
 #include "apps/record/record.hpp"
 #include "idl/recording.h"
-#include "services/recording/bus_recording.hpp"
-#include "services/runtime/remote_control.hpp"
+#include "services/bus/recording/bus_recording.hpp"
+#include "services/bus/remote_control.hpp"
 
 namespace stillhand::record {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 
 namespace stillhand::recordings {
 namespace {

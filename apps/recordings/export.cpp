@@ -6,16 +6,16 @@
 #include <memory>
 #include <set>
 
+#include "apps/libraries/report/result_files.hpp"
 #include "apps/recordings/column_names.hpp"
 #include "apps/recordings/csv_tables.hpp"
 #include "apps/recordings/hdf5_tables.hpp"
 #include "apps/recordings/mat_tables.hpp"
-#include "apps/report/result_files.hpp"
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/messages/schema_types.hpp"
-#include "services/recording/core/topic_filter.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/messages/schema_types.hpp"
+#include "services/core/recording/topic_filter.hpp"
 
 namespace stillhand::recordings {
 namespace {

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "idl/topics.hpp"
-#include "services/recording/core/mcap/compression.hpp"
-#include "services/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/compression.hpp"
+#include "services/core/recording/sample_clock.hpp"
 
 namespace stillhand::recordings {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/recordings/info.hpp"
-#include "services/recording/core/mcap/mcap_loss.hpp"
+#include "services/core/recording/mcap/mcap_loss.hpp"
 
 namespace stillhand::recordings {
 namespace {

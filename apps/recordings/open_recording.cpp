@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_loss.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_loss.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::recordings {
 

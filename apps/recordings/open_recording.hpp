@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::recordings {
 

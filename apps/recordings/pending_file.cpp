@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::recordings {
 namespace {

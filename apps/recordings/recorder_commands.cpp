@@ -8,16 +8,16 @@
 #include <filesystem>
 #include <memory>
 
+#include "apps/libraries/report/result_files.hpp"
 #include "apps/recordings/export.hpp"
 #include "apps/recordings/info.hpp"
 #include "apps/recordings/recover.hpp"
 #include "apps/recordings/ros2_bag.hpp"
-#include "apps/report/result_files.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/compression.hpp"
-#include "services/recording/core/mcap/mcap_loss.hpp"
-#include "services/runtime/process/remark.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/compression.hpp"
+#include "services/core/recording/mcap/mcap_loss.hpp"
+#include "services/system/process/remark.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::recordings {
 namespace {

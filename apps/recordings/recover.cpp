@@ -12,8 +12,8 @@
 #include <system_error>
 
 #include "apps/recordings/pending_file.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
 #include "version.hpp"
 
 namespace stillhand::recordings {

@@ -12,13 +12,12 @@
 
 #include "apps/recordings/pending_file.hpp"
 #include "apps/recordings/ros2_definitions.hpp"
-#include "fast_dds/cdr.hpp"
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
 #include "version.hpp"
 
 namespace stillhand::recordings {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "services/recording/core/messages/message_columns.hpp"
+#include "services/core/recording/messages/message_columns.hpp"
 
 namespace stillhand::recordings {
 

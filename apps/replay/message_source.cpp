@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "services/runtime/process/real_time.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::replay {
 

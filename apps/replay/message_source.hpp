@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "services/recording/core/held_message.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/recording/held_message.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::replay {
 

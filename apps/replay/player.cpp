@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "services/runtime/process/clock.hpp"
+#include "services/system/process/clock.hpp"
 
 namespace stillhand::replay {
 

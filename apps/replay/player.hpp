@@ -7,8 +7,8 @@
 #include <string>
 
 #include "apps/replay/message_source.hpp"
-#include "services/recording/core/messages/release_errors.hpp"
-#include "services/recording/core/play_clock.hpp"
+#include "services/core/recording/messages/release_errors.hpp"
+#include "services/core/recording/play_clock.hpp"
 
 namespace stillhand::replay {
 

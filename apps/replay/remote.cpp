@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "apps/replay/replay.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::replay {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "apps/replay/player.hpp"
 #include "idl/recording.h"
-#include "services/runtime/remote_control.hpp"
+#include "services/bus/remote_control.hpp"
 
 namespace stillhand::replay {
 

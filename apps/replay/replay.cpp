@@ -14,12 +14,12 @@
 #include "apps/replay/remote.hpp"
 #include "apps/replay/route_plan.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
-#include "services/recording/core/mcap/mcap_loss.hpp"
-#include "services/runtime/bus/playback.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "services/bus/playback.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/recording/mcap/mcap_loss.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::replay {
 

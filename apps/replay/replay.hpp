@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "services/recording/core/play_clock.hpp"
-#include "services/recording/core/topic_filter.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/core/recording/play_clock.hpp"
+#include "services/core/recording/topic_filter.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::replay {
 

@@ -6,12 +6,12 @@
 #include <memory>
 
 #include "apps/replay/replay.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/within.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
-#include "services/runtime/process/shipped.hpp"
-#include "services/settings/repeatable.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/within.hpp"
+#include "services/files/settings/repeatable.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
+#include "services/system/process/shipped.hpp"
 
 namespace stillhand::replay {
 namespace {

@@ -9,9 +9,9 @@
 #include "idl/cdr.hpp"
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/messages/same_definition.hpp"
-#include "services/recording/qos_texts.hpp"
+#include "services/bus/recording/qos_texts.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/messages/same_definition.hpp"
 
 namespace stillhand::replay {
 

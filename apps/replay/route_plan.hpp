@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/replay/replay.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/runtime/bus/playback.hpp"
+#include "services/bus/playback.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
 
 namespace stillhand::replay {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "services/settings/nearest.hpp"
+#include "services/files/settings/nearest.hpp"
 
 namespace stillhand {
 namespace {

@@ -28,8 +28,8 @@
 #include "apps/stop/stop_command.hpp"
 #include "apps/study/study_command.hpp"
 #include "apps/vehicle/vehicle_command.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/remark.hpp"
 #include "version.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <tuple>
 
-#include "services/runtime/process/domain.hpp"
+#include "services/system/process/domain.hpp"
 
 namespace stillhand::stop {
 namespace {

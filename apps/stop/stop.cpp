@@ -16,12 +16,12 @@
 
 #include "apps/stop/socket_owners.hpp"
 #include "idl/topics.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/emergency_stop.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
-#include "services/runtime/process/remark.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/emergency_stop.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::stop {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "apps/stop/running_sessions.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::stop {
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "apps/stop/stop.hpp"
-#include "services/runtime/process/shipped.hpp"
-#include "services/settings/check_name.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/system/process/shipped.hpp"
 
 namespace stillhand::stop {
 

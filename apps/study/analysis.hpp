@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/session/paper_table.hpp"
+#include "apps/libraries/session/paper_table.hpp"
 #include "apps/study/conditions.hpp"
 #include "apps/study/subject_session.hpp"
-#include "services/statistics/descriptive.hpp"
-#include "services/statistics/manova.hpp"
-#include "services/statistics/ratio.hpp"
-#include "services/statistics/t_test.hpp"
+#include "services/core/statistics/descriptive.hpp"
+#include "services/core/statistics/manova.hpp"
+#include "services/core/statistics/ratio.hpp"
+#include "services/core/statistics/t_test.hpp"
 
 namespace stillhand::study {
 
@@ -92,7 +92,7 @@ Comparison compared(const Analysis& analysis, Condition from, Condition to);
 /// "A, B, C, C', C+": the conditions of an analysis, in their order in its tests.
 std::string words_of_conditions(const Analysis& analysis);
 
-/// Eqs. SU-3 to SU-5; statistics of services/statistics.  Pure.
+/// Eqs. SU-3 to SU-5; statistics of services/core/statistics.  Pure.
 /// @param results  at least one subject, all with the same conditions
 Analysis analyse(const std::vector<SubjectResult>& results);
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/session/core/conditions.hpp"
+#include "apps/libraries/session/core/conditions.hpp"
 
 /// The conditions, by which a study keeps its results; only recorded sessions have C' and C+.
 namespace stillhand::study {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/report/or_null.hpp"
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/or_null.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/study/csv_cells.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/participants.hpp"

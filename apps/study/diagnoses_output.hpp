@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/page.hpp"
-#include "apps/report/plot/figure.hpp"
+#include "apps/libraries/report/page.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
 #include "apps/study/output.hpp"
 
 /// The diagnoses of a recorded study (--diagnose) in its files.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "apps/session/protocol.hpp"
+#include "apps/libraries/session/protocol.hpp"
 #include "apps/study/analysis.hpp"
 #include "apps/study/diagnoses_output.hpp"
 #include "apps/study/report_sections.hpp"

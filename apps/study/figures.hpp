@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/plot/figure.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
 #include "apps/study/output.hpp"
 
 namespace stillhand::study {

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/plot/figure_table.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/plot/figure_table.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/participants.hpp"
 #include "apps/study/report_cells.hpp"
 #include "apps/study/report_sections.hpp"
 #include "apps/study/study_report.hpp"
-#include "services/rig/sealed_file.hpp"
+#include "services/files/rig/sealed_file.hpp"
 
 namespace stillhand::study {
 namespace {

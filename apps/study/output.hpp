@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 #include "apps/study/analysis.hpp"
 #include "apps/study/recorded/diagnoses.hpp"
 #include "apps/study/recorded/recorded_trial.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/study/output.hpp"
-#include "services/settings/check_number.hpp"
+#include "services/files/settings/check_number.hpp"
 
 namespace stillhand::study {
 

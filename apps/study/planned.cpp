@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/contract/config_error.hpp"
-#include "services/statistics/multiple_testing.hpp"
-#include "services/statistics/power.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/statistics/multiple_testing.hpp"
+#include "services/core/statistics/power.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/text.hpp"
 
 namespace stillhand::study {
 

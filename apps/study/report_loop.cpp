@@ -7,11 +7,11 @@
 #include <iterator>
 #include <map>
 
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/report_cells.hpp"
 #include "apps/study/report_sections.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::study {
 

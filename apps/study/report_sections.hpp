@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "apps/report/page.hpp"
+#include "apps/libraries/report/page.hpp"
 #include "apps/study/output.hpp"
 
 /// Parts of study_report().

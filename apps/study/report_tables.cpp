@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/study/report_cells.hpp"
 #include "apps/study/report_sections.hpp"
-#include "services/statistics/power.hpp"
+#include "services/core/statistics/power.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/run_jobs.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/run_jobs.hpp"
 
 namespace stillhand::study {
 namespace {

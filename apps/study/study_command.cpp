@@ -10,21 +10,21 @@
 #include <memory>
 #include <vector>
 
-#include "apps/report/command_line.hpp"
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/progress.hpp"
-#include "apps/report/result_files.hpp"
+#include "apps/libraries/report/command_line.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/progress.hpp"
+#include "apps/libraries/report/result_files.hpp"
 #include "apps/study/explain/calibrate.hpp"
 #include "apps/study/explain/explanation_output.hpp"
 #include "apps/study/mitigations/campaign_command.hpp"
 #include "apps/study/plan_options.hpp"
 #include "apps/study/study_runs.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/stop.hpp"
-#include "services/settings/check_name.hpp"
-#include "services/settings/check_number.hpp"
-#include "services/settings/load.hpp"
-#include "services/settings/repeatable.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/files/settings/check_number.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/files/settings/repeatable.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apps/report/page.hpp"
+#include "apps/libraries/report/page.hpp"
 #include "apps/study/output.hpp"
 
 namespace stillhand::study {

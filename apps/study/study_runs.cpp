@@ -8,17 +8,17 @@
 #include <cstdio>
 #include <utility>
 
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/progress.hpp"
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/progress.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 #include "apps/study/recorded/find_sessions.hpp"
 #include "apps/study/recorded/recorded_subjects.hpp"
 #include "apps/study/study.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/rig/sealed_file.hpp"
-#include "services/runtime/process/remark.hpp"
-#include "services/runtime/process/stop.hpp"
-#include "services/settings/describe.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/rig/sealed_file.hpp"
+#include "services/files/settings/describe.hpp"
+#include "services/system/process/remark.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "apps/study/trial_analysis.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/expects.hpp"
-#include "services/settings/describe.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/expects.hpp"
+#include "services/files/settings/describe.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/session/in_process.hpp"
+#include "apps/libraries/session/in_process.hpp"
 #include "apps/study/conditions.hpp"
-#include "services/identification/core/arx.hpp"
-#include "services/identification/core/identifier.hpp"
-#include "services/identification/core/output_error.hpp"
-#include "services/identification/core/rate_conversion.hpp"
-#include "services/identification/core/tracking_metrics.hpp"
-#include "services/population/population.hpp"
-#include "services/signal/spectrum.hpp"
+#include "services/core/identification/arx.hpp"
+#include "services/core/identification/identifier.hpp"
+#include "services/core/identification/output_error.hpp"
+#include "services/core/identification/rate_conversion.hpp"
+#include "services/core/identification/tracking_metrics.hpp"
+#include "services/core/population/population.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::study {
 

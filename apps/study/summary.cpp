@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/report/or_null.hpp"
+#include "apps/libraries/report/or_null.hpp"
 #include "apps/study/diagnoses_output.hpp"
 #include "apps/study/output.hpp"
 #include "version.hpp"

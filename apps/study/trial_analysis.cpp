@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/signal/reference.hpp"
+#include "services/core/signal/reference.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "apps/session/in_process.hpp"
+#include "apps/libraries/session/in_process.hpp"
 #include "apps/study/subject_session.hpp"
-#include "services/contract/tick.hpp"
-#include "services/identification/core/identifier.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/identification/identifier.hpp"
 
 /// From the signals of one trial to its part of a study: the one path for simulated subjects and
 /// for recorded participants.

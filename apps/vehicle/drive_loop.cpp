@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "apps/session/protocol.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/rig/plant.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/rig/plant.hpp"
 
 namespace stillhand::vehicle {
 namespace {

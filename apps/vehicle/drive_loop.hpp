@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "apps/session/loop.hpp"
-#include "services/admittance/core/interleaved_multisines.hpp"
-#include "services/admittance/core/line_responses.hpp"
-#include "services/identification/core/identifier.hpp"
-#include "services/identification/core/record.hpp"
-#include "services/vehicle/driven_motion.hpp"
+#include "apps/libraries/session/loop.hpp"
+#include "services/core/admittance/interleaved_multisines.hpp"
+#include "services/core/admittance/line_responses.hpp"
+#include "services/core/identification/identifier.hpp"
+#include "services/core/identification/record.hpp"
+#include "services/core/vehicle/driven_motion.hpp"
 
 namespace stillhand::vehicle {
 
@@ -56,7 +56,7 @@ class DriveLoop {
 
   /// The paper's pegged trial (III-A): noise of 0.7 to 4 Hz.  @return acceleration and force, 1 kHz
   identification::Record pegged(double seconds, std::uint64_t seed);
-  /// The free stick, motor and platform at interleaved lines (services/admittance); one period
+  /// The free stick, motor and platform at interleaved lines (services/core/admittance); one period
   /// settles before those that are kept.
   FreeStick free_stick(const admittance::Excitation& excitation, int periods);
   /// The model of condition C.  @throws ConfigError when the canceller refuses it.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/signal/difference_model.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::vehicle {
 namespace {

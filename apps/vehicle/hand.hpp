@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "apps/vehicle/drive_loop.hpp"
-#include "services/identification/core/identifier.hpp"
-#include "services/vehicle/core/loop_margin.hpp"
+#include "services/core/identification/identifier.hpp"
+#include "services/core/vehicle/loop_margin.hpp"
 
 namespace stillhand::vehicle {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "services/contract/config_error.hpp"
-#include "services/population/population.hpp"
-#include "services/runtime/process/run_jobs.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/population/population.hpp"
+#include "services/core/statistics/descriptive.hpp"
+#include "services/system/process/run_jobs.hpp"
 
 namespace stillhand::vehicle {
 namespace {

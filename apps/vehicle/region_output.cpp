@@ -8,8 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "apps/report/text.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::vehicle {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/page.hpp"
-#include "apps/report/plot/figure.hpp"
+#include "apps/libraries/report/page.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
 #include "apps/vehicle/region.hpp"
 
 namespace stillhand::vehicle {

@@ -7,16 +7,16 @@
 #include <memory>
 #include <string>
 
-#include "apps/report/command_line.hpp"
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/progress.hpp"
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/command_line.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/progress.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 #include "apps/vehicle/region.hpp"
 #include "apps/vehicle/region_output.hpp"
-#include "services/runtime/process/remark.hpp"
-#include "services/runtime/process/stop.hpp"
-#include "services/settings/check_name.hpp"
-#include "services/settings/check_number.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/files/settings/check_number.hpp"
+#include "services/system/process/remark.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::vehicle {
 namespace {

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/admittance/core/relation.hpp"
-#include "services/population/population.hpp"
-#include "services/signal/random.hpp"
-#include "services/signal/spectrum.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/admittance/relation.hpp"
+#include "services/core/population/population.hpp"
+#include "services/core/signal/random.hpp"
+#include "services/core/signal/spectrum.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
 #include "tests/support/rig_record.hpp"
 

@@ -16,9 +16,9 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/process/real_time.hpp"
+#include "services/bus/bus.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/real_time.hpp"
 #include "tests/support/wait.hpp"
 
 namespace {

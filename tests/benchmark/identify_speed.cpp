@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "services/identification/core/arx.hpp"
-#include "services/identification/core/paper_preprocessing.hpp"
+#include "services/core/identification/arx.hpp"
+#include "services/core/identification/paper_preprocessing.hpp"
 
 namespace {
 

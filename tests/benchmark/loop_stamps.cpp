@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/session/session_recording.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/runtime/trial_codec.hpp"
+#include "apps/libraries/session/session_recording.hpp"
+#include "services/bus/trial_codec.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
 #include "tests/benchmark/loop_figures.hpp"
 
 namespace {

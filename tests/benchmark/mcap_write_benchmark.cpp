@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::recording {
 namespace {

@@ -132,7 +132,7 @@ def emps(folder, table):
 
 # The first 2.6 s of every record hold spikes that later cycles of the same motion don't: they are named as transients in the
 # fit records; in the check record no model can know them. With fewer than three effects the spikes decide the choice of the
-# form: see services/diagnosis/RESULTS.md.
+# form: see services/core/diagnosis/RESULTS.md.
 def shaking_table(folder, table):
     fit = ["shaketable_chirpFi07Ff2", "shaketable_SineA2F3", "shaketable_RandomA5F03"]
     study = Study(folder, fit, "reference", "table_velocity", "--model", "arx")

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
 #include "tests/planted/series.hpp"
 #include "tests/planted/to_measurement.hpp"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
 #include "tests/planted/draw.hpp"
 #include "tests/planted/series.hpp"

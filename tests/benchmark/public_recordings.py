@@ -60,7 +60,7 @@ SOURCES = {
                   commit="2a565d57ca30bdf126da507c00ad1f1e481ca434",
                   origin="cascaded tanks with overflow (Schoukens, Mattson, Wigren and Noel 2016)"),
 }
-# Of the CSV files that the figures in services/diagnosis/RESULTS.md were measured on.
+# Of the CSV files that the figures in services/core/diagnosis/RESULTS.md were measured on.
 SHA_256 = {
     "cd_arm_check.csv": "c3702146f9f68de3b3165017d930bd4cffe77a97aef73f7dc2de1ec0614a3f5a",
     "cd_arm_fit.csv": "565773823556d95e95599f5d99e96cd7ae3d139f926ceeafbaaa98faacf4d9f7",

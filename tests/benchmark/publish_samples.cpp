@@ -8,9 +8,9 @@
 
 #include "idl/control_loop.h"
 #include "places.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/bus/bus.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/stop.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;

@@ -4,8 +4,8 @@
 #include <iostream>
 #include <string>
 
-#include "apps/measurement/read.hpp"
-#include "apps/measurement/tables/mapping.hpp"
+#include "apps/libraries/measurement/read.hpp"
+#include "apps/libraries/measurement/tables/mapping.hpp"
 
 int main(int count, char** words) {
   using namespace stillhand::measurement;

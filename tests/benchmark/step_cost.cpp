@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/rig/core/rig.hpp"
-#include "services/sensing/core/conditioner.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/core/sensing/conditioner.hpp"
 
 namespace stillhand {
 namespace {

@@ -14,7 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "services/runtime/process/clock.hpp"
+#include "services/system/process/clock.hpp"
 #include "tests/emulators/moteus_emulator.hpp"
 #include "tests/emulators/odrive_emulator.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "services/rig/core/rig.hpp"
+#include "services/core/rig/rig.hpp"
 
 namespace stillhand::emulators {
 

@@ -13,7 +13,7 @@ namespace stillhand::emulators {
 std::string indicator_line(double force_n, bool overload = false);
 
 /// A load cell indicator that is not there: it streams 500 lines a second to a pseudo-terminal and
-/// hears nothing.  The format is our own (services/device_rig/METHOD.md, DR-36).
+/// hears nothing.  The format is our own (services/core/device_rig/METHOD.md, DR-36).
 class IndicatorSide {
  public:
   explicit IndicatorSide(std::filesystem::path link) : serial_(std::move(link)) {}

@@ -11,7 +11,7 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "services/runtime/trial_codec.hpp"
+#include "services/bus/trial_codec.hpp"
 
 namespace stillhand::emulators {
 namespace {

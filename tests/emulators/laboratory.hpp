@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "services/contract/trial.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/runtime/bus/tap.hpp"
-#include "services/runtime/process/latest_value.hpp"
+#include "services/bus/tap.hpp"
+#include "services/core/contract/trial.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/system/process/latest_value.hpp"
 #include "tests/emulators/drive_emulator.hpp"
 #include "tests/emulators/platform_emulator.hpp"
 

@@ -8,10 +8,10 @@
 #include <exception>
 #include <optional>
 
-#include "services/contract/config_error.hpp"
-#include "services/rig/plant.hpp"
-#include "services/runtime/process/real_time.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/rig/plant.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/system/process/real_time.hpp"
 #include "tests/emulators/emulated_loop.hpp"
 
 namespace {

@@ -21,8 +21,8 @@ struct SeatState {
   double acceleration_m_s2 = 0.0;
 };
 
-/// A platform that speaks the plain protocol (services/device_rig, METHOD), written from that text
-/// alone: it shares no code with the driver.  The clock is the caller's.
+/// A platform that speaks the plain protocol (services/devices/device_rig, METHOD), written from
+/// that text alone: it shares no code with the driver.  The clock is the caller's.
 class PlatformEmulator {
  public:
   /// @returns the reply to send; empty: the datagram is no command

@@ -6,18 +6,18 @@
 #include <optional>
 #include <utility>
 
-#include "services/cancellation/codec.hpp"
-#include "services/cancellation/parts/recipe.hpp"
-#include "services/display/codec.hpp"
-#include "services/human_operator/codec.hpp"
-#include "services/human_operator/core/subject_config.hpp"
-#include "services/motion/codec.hpp"
-#include "services/motion/core/motion_generator.hpp"
-#include "services/rig/codec.hpp"
-#include "services/runtime/trial_codec.hpp"
-#include "services/sensing/codec.hpp"
-#include "services/vehicle/codec.hpp"
-#include "services/vehicle/vehicle_settings.hpp"
+#include "services/bus/trial_codec.hpp"
+#include "services/core/cancellation/parts/recipe.hpp"
+#include "services/core/human_operator/subject_config.hpp"
+#include "services/core/motion/motion_generator.hpp"
+#include "services/core/vehicle/vehicle_settings.hpp"
+#include "services/messages/cancellation/codec.hpp"
+#include "services/messages/display/codec.hpp"
+#include "services/messages/human_operator/codec.hpp"
+#include "services/messages/motion/codec.hpp"
+#include "services/messages/rig/codec.hpp"
+#include "services/messages/sensing/codec.hpp"
+#include "services/messages/vehicle/codec.hpp"
 #include "tests/equivalence/recorded_trial.hpp"
 
 namespace stillhand::equivalence {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "apps/session/session_recording.hpp"
-#include "services/settings/load.hpp"
+#include "apps/libraries/session/session_recording.hpp"
+#include "services/files/settings/load.hpp"
 #include "tests/equivalence/replay.hpp"
 
 namespace stillhand::equivalence {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <set>
 
-#include "services/identification/codec.hpp"
-#include "services/identification/core/pegged_record.hpp"
-#include "services/runtime/trial_codec.hpp"
+#include "services/bus/trial_codec.hpp"
+#include "services/core/identification/pegged_record.hpp"
+#include "services/messages/identification/codec.hpp"
 #include "tests/equivalence/core_replays.hpp"
 #include "tests/equivalence/recorded_trial.hpp"
 

@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/equivalence/core_replays.hpp"
 
 namespace stillhand::equivalence {

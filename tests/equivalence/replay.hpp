@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "services/contract/flag.hpp"
-#include "services/contract/tick.hpp"
+#include "services/core/contract/flag.hpp"
+#include "services/core/contract/tick.hpp"
 #include "tests/support/idl_fields.hpp"
 
 namespace stillhand::equivalence {

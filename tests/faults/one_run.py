@@ -27,7 +27,7 @@ TICKS_PER_S = 1000
 
 
 def control_model():
-    """A control model with something in every part that a trial can reach (services/cancellation, "Model file")."""
+    """A control model with something in every part that a trial can reach (services/processes/cancellation, "Model file")."""
     return {"format": "stillhand control model", "version": 1, "rig": 1, "rate_hz": 1000.0,
             "denominator": [1.0, -1.99, 0.9902],
             "inputs": [{"channel": "a_y", "map": None, "numerator": [0.0, 2e-4, 1e-4]},

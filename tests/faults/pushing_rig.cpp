@@ -19,10 +19,10 @@
 #include <filesystem>
 #include <numbers>
 
-#include "services/device_rig/device_plant.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
-#include "services/settings/load.hpp"
+#include "services/devices/device_rig/device_plant.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace {
 

@@ -21,11 +21,11 @@
 #include "idl/session.h"
 #include "idl/topics.hpp"
 #include "places.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/bus/tap.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
-#include "services/runtime/remote_control.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/remote_control.hpp"
+#include "services/bus/tap.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <string>
 
-#include "apps/measurement/read.hpp"
-#include "apps/measurement/tables/bag_table.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/measurement/read.hpp"
+#include "apps/libraries/measurement/tables/bag_table.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace {
 

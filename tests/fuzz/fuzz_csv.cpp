@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/csv.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/csv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace stillhand;

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "services/device_rig/core/fdcanusb_line.hpp"
-#include "services/device_rig/core/moteus_drive.hpp"
-#include "services/device_rig/core/platform_protocol.hpp"
+#include "services/core/device_rig/fdcanusb_line.hpp"
+#include "services/core/device_rig/moteus_drive.hpp"
+#include "services/core/device_rig/platform_protocol.hpp"
 
 namespace {
 

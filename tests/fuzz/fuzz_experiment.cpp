@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/experiment/file/experiment_file.hpp"
-#include "apps/experiment/file/journal.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/experiment/file/experiment_file.hpp"
+#include "apps/libraries/experiment/file/journal.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace {
 

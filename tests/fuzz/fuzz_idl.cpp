@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The definitions inside a recording, and messages of them: the text ends at the first zero, what
 // follows is the message of each of its structs.
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/fuzz/read_types.hpp"
 #include "tests/fuzz/two_parts.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/deploy/inventory.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace stillhand;

@@ -3,11 +3,11 @@
 // check.
 #include <string_view>
 
-#include "services/cancellation/control_model_file.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/model_file.hpp"
-#include "services/identification/model_file.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
+#include "services/files/diagnosis/model_file.hpp"
+#include "services/files/identification/model_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace stillhand;

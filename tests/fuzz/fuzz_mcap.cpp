@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recordings as MCAP: opened by index or by scan, every message, then every checksum.  The limit on
 // a chunk is low, so that the fuzzer's own limit on memory finds what ignores it.
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace stillhand::recording;

@@ -8,8 +8,8 @@
 #include <span>
 
 #include "idl/cdr.hpp"
-#include "services/cancellation/codec.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/messages/cancellation/codec.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The definitions inside a recording of ROS 2, and messages of them: the text ends at the first
 // zero, what follows is the message of each of its types.
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/messages/ros2msg.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/messages/ros2msg.hpp"
 #include "tests/fuzz/read_types.hpp"
 #include "tests/fuzz/two_parts.hpp"
 

@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/measurement/grid.hpp"
-#include "apps/measurement/tables/apply_mapping.hpp"
-#include "apps/measurement/tables/text_table.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/measurement/grid.hpp"
+#include "apps/libraries/measurement/tables/apply_mapping.hpp"
+#include "apps/libraries/measurement/tables/text_table.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/fuzz/two_parts.hpp"
 
 namespace {

@@ -2,11 +2,11 @@
 // Settings as YAML.
 #include <string>
 
-#include "services/cancellation/core/config.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/population/population.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/cancellation/config.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/population/population.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/files/settings/load.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace stillhand;

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "services/recording/core/messages/message_columns.hpp"
-#include "services/recording/core/messages/omgidl.hpp"
+#include "services/core/recording/messages/message_columns.hpp"
+#include "services/core/recording/messages/omgidl.hpp"
 
 namespace stillhand::fuzz {
 

@@ -5,16 +5,16 @@
 #include <fstream>
 #include <string>
 
-#include "apps/experiment/file/experiment_file.hpp"
-#include "apps/experiment/file/journal.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
+#include "apps/libraries/experiment/file/experiment_file.hpp"
+#include "apps/libraries/experiment/file/journal.hpp"
 #include "idl/model.h"
-#include "services/cancellation/codec.hpp"
-#include "services/cancellation/control_model_file.hpp"
-#include "services/identification/model_file.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
-#include "services/recording/core/messages/schema_types.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "services/core/recording/messages/schema_types.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
+#include "services/files/identification/model_file.hpp"
+#include "services/messages/cancellation/codec.hpp"
 #include "tests/support/cdr_bytes.hpp"
 #include "tests/support/session_file.hpp"
 

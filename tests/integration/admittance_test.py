@@ -18,12 +18,12 @@ from lab_process import BUILD, STILLHAND, LabProcess, campaign, main
 PERIOD_S = 4
 PERIODS = 6
 SESSION_LIMIT_S = 120
-# Bound of the perturbation, services/admittance, ExcitationConfig::peak_force_n.
+# Bound of the perturbation, services/core/admittance, ExcitationConfig::peak_force_n.
 PEAK_N = 8.0
 
 
 def admittance(settings, frequency_hz):
-    """-X/F of the idle hand of the rig with these settings [m/N]; services/rig, RG-3 and RG-5."""
+    """-X/F of the idle hand of the rig with these settings [m/N]; services/processes/rig, RG-3 and RG-5."""
     values = {name: float(value) for name, value in re.findall(r"^ +(\w+): ([-+.e\d]+)$", settings, re.M)}
     s = 2j * math.pi * frequency_hz
     shoulder = values["shoulder_stiffness_n_m"] + s * values["shoulder_damping_n_s_m"]

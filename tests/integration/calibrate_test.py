@@ -163,7 +163,7 @@ class CalibrateTest(LabTestCase):
         self.addCleanup(self.laboratory.close)
 
     def response(self, frequency_hz):
-        """Closed form of the emulated platform (services/rig, Eq. RG-1)."""
+        """Closed form of the emulated platform (services/processes/rig, Eq. RG-1)."""
         s = 2j * math.pi * frequency_hz
         w, z = 2 * math.pi * self.PLATFORM["loop_frequency_hz"], self.PLATFORM["loop_damping"]
         return (2 * z * w * s + w * w) / (self.PLATFORM["torque_lag_s"] * s ** 3 + s * s + 2 * z * w * s + w * w)

@@ -10,10 +10,10 @@
 
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
-#include "services/contract/flag.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/recording/sample_clock.hpp"
+#include "services/core/contract/flag.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/recording/sample_clock.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace {
 

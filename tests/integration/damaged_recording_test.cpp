@@ -9,10 +9,10 @@
 #include <cstring>
 #include <optional>
 
-#include "services/recording/core/mcap/crc32.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/recording/mcap/crc32.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::recording {
 namespace {

@@ -252,7 +252,7 @@ class DevicesTest(DevicesCase):
             self.assertLess(statistics.median(errors), 0.3)  # as admittance_test from the closed form
 
 
-# The bound of the perturbation, services/admittance, ExcitationConfig::peak_force_n.
+# The bound of the perturbation, services/core/admittance, ExcitationConfig::peak_force_n.
 PERTURBATION_PEAK_N = 8.0
 # The RMS error of a trial of 20 s varies from repeat to repeat; see tests/emulators/README.md.
 RMS_TOLERANCE = 0.15

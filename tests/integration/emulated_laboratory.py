@@ -59,7 +59,7 @@ def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, odrive=False,
     lines = ["signals:"] + [f"  {name}: {part}" for name, part in (parts | signals).items()]
     lines += ["drive:", f"  port: {link}", f"  watchdog_s: {WATCHDOG_MS / 1000}", f"  max_age_ticks: {MAX_AGE_MS}",
               f"  checksum: {'true' if uart else 'false'}"]
-    # What 921600 baud carry: services/device_rig/DEVICES.md, "The drive's settings".
+    # What 921600 baud carry: services/devices/device_rig/DEVICES.md, "The drive's settings".
     lines += ["  kind: odrive", "  period_ticks: 3"] if odrive else []
     lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}", f"  valid_ms: {MAX_AGE_MS}"]
     for group in ("accelerometer", "load_cell") if iio else ():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """No file of field_files.py gives a wrong number that looks good: it is right, refused, or not usable, and says why.
 
-With --table it prints what came out, for apps/measurement/RESULTS.md.
+With --table it prints what came out, for apps/libraries/measurement/RESULTS.md.
 """
 import json
 import pathlib

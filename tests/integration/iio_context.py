@@ -82,7 +82,7 @@ class IioContext:
     @staticmethod
     def real_time():
         """Words before iiod's own. It is a stage of the control path: with ordinary priority its threads wait behind
-        every compiler, several times for each sample (services/device_rig/DEVICES.md, IIO devices)."""
+        every compiler, several times for each sample (services/devices/device_rig/DEVICES.md, IIO devices)."""
         words = ["chrt", "--fifo", "40"]
         return " ".join(words) if subprocess.run([*words, "true"], capture_output=True, check=False).returncode == 0 else ""
 

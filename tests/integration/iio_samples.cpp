@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/transport/iio_device.hpp"
+#include "services/system/transport/iio_device.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 5 && argc != 6) return 2;

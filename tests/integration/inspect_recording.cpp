@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/session/session_recording.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/session/session_recording.hpp"
+#include "services/core/contract/config_error.hpp"
 
 // inspect_recording FILE LAST_TICKS [signals]: what the integration tests ask of a session's
 // recording, as one JSON object; of the rig's truth its last LAST_TICKS samples, and with `signals`

@@ -89,7 +89,7 @@ class LabSessionTest(unittest.TestCase):
 
     def test_model_predicts_unseen_data_and_cancels_most_of_the_force(self):
         self.assertTrue(self.summary["identification"]["usable"])
-        # What measured feedthrough studies report (services/rig/METHOD.md): no model of a_y explains a hand to the last.
+        # What measured feedthrough studies report (services/core/rig/METHOD.md): no model of a_y explains a hand to the last.
         self.assertGreater(self.summary["identification"]["heldout_vaf_percent"], 88.0)
         self.assertLess(self.summary["identification"]["heldout_vaf_percent"], 97.0)
         self.assertAlmostEqual(self.summary["conditions"]["C"]["cancelled_share"], CANCELLED_SHARE,

@@ -13,8 +13,8 @@ from lab_process import MATCH_LIMIT_S, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, 
 from virtual_display import VirtualDisplay, missing_tools
 
 TITLE = "Stillhand"
-WINDOW = (1024, 768)  # services/display/screen_loop.cpp
-# Defaults of services/display and services/human_operator (their READMEs); deploy/config leaves them.
+WINDOW = (1024, 768)  # services/processes/display/screen_loop.cpp
+# Defaults of services/processes/display and services/processes/human_operator (their READMEs); deploy/config leaves them.
 SCREEN_M = (0.3048, 0.2286)
 PIXELS_PER_M = WINDOW[0] / SCREEN_M[0]
 TRACK_ABOVE_BOTTOM_M = 0.057

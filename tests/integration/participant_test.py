@@ -23,7 +23,7 @@ from lab_process import STILLHAND, campaign, hold, next_domain, running, wait_fo
 from virtual_display import VirtualDisplay, missing_tools
 
 TITLE = "Stillhand"
-WINDOW = (1024, 768)  # services/display/screen_loop.cpp
+WINDOW = (1024, 768)  # services/processes/display/screen_loop.cpp
 WINDOW_LIMIT_S = 60.0
 STEP_LIMIT_S = 60.0
 WHITE = bytes(level > 200 for level in range(256))

@@ -4,10 +4,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "apps/session/in_process.hpp"
-#include "services/identification/core/arx.hpp"
-#include "services/identification/core/paper_preprocessing.hpp"
-#include "services/population/population.hpp"
+#include "apps/libraries/session/in_process.hpp"
+#include "services/core/identification/arx.hpp"
+#include "services/core/identification/paper_preprocessing.hpp"
+#include "services/core/population/population.hpp"
 
 namespace {
 

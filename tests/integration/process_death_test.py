@@ -21,7 +21,7 @@ MAX_MOTOR_AGE_TICKS = 10  # deploy/config/rig.yaml, motor.max_motor_age_ticks
 # (the DDS deadline, 5 ms), the lease's timer counts in whole milliseconds (1 ms), and the rig, the interlock's event
 # thread and the recorded tick are each at most as late as the rig may be before it shifts its schedule (3 x 5 ms).
 DETECTION_LIMIT_NS = (300 + 5 + 1 + 3 * 5) * 1_000_000
-# The recorder writes what it has every 500 ms (services/recording/README.md), in batches of 50 ms.
+# The recorder writes what it has every 500 ms (services/processes/recording/README.md), in batches of 50 ms.
 RECORDER_LOSS_NS = 600_000_000
 
 

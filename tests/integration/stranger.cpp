@@ -31,12 +31,12 @@
 #include "idl/session.h"
 #include "idl/topics.hpp"
 #include "places.hpp"
-#include "services/runtime/bus/participant.hpp"
-#include "services/runtime/bus/source.hpp"
-#include "services/runtime/bus/type_tag.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/stop.hpp"
-#include "services/runtime/sources_codec.hpp"
+#include "services/bus/participant.hpp"
+#include "services/bus/source.hpp"
+#include "services/bus/sources_codec.hpp"
+#include "services/bus/type_tag.hpp"
+#include "services/system/process/clock.hpp"
+#include "services/system/process/stop.hpp"
 #include "tests/support/wait.hpp"
 
 namespace {

@@ -19,9 +19,9 @@ SEED = 90417733560021
 KINDS = ("nonlinear_stiffness", "asymmetry", "dead_zone", "time_varying_gain", "resonance", "position_ripple",
          "coulomb_friction", "coupled_input", "tone", "delay", "output_saturation")
 SECRET = re.compile(r"stillhand::rig::(UndeclaredEffect|SealedEffect|EffectOnChain|draw_effect|draw_outside|EffectPlan)")
-SEALED_HEADERS = re.compile(r'#include "services/rig/(core/undeclared/\w+|sealed_file)\.hpp"')
+SEALED_HEADERS = re.compile(r'#include "services/processes/rig/(core/undeclared/\w+|sealed_file)\.hpp"')
 # The programs that step the rig in one process, and those that write the sealed file.
-MAY_INCLUDE = ("services/rig/", "apps/session/", "apps/lab/", "apps/study/", "apps/close_the_loop/session.",
+MAY_INCLUDE = ("services/processes/rig/", "apps/libraries/session/", "apps/lab/", "apps/study/", "apps/close_the_loop/session.",
                "apps/close_the_loop/closed_loop_command.", "apps/close_the_loop/output.", "tests/")
 RECORDED_WITHOUT = BUILD / "tests" / "lab_run" / "session.mcap"  # ctest's fixture lab_run
 SESSION_LIMIT_S = 120
@@ -58,7 +58,7 @@ class UndeclaredEffectTest(LabTestCase):
             for path in (SOURCE / folder).rglob("*.[ch]pp"):
                 if SEALED_HEADERS.search(path.read_text()):
                     found.append(str(path.relative_to(SOURCE)))
-        self.assertIn("services/rig/core/rig.hpp", found)
+        self.assertIn("services/core/rig/rig.hpp", found)
         self.assertEqual([path for path in found if not path.startswith(MAY_INCLUDE)], [])
 
     def sealed_session(self):

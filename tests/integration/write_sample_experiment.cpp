@@ -25,15 +25,15 @@
 
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/experiment/folder.hpp"
-#include "apps/session/in_process.hpp"
+#include "apps/libraries/session/in_process.hpp"
 #include "apps/study/trial_analysis.hpp"
 #include "idl/idl_text.hpp"
-#include "services/cancellation/codec.hpp"
-#include "services/cancellation/control_model_file.hpp"
-#include "services/identification/codec.hpp"
-#include "services/population/population.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/recording/of_experiment.hpp"
+#include "services/bus/recording/of_experiment.hpp"
+#include "services/core/population/population.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/messages/cancellation/codec.hpp"
+#include "services/messages/identification/codec.hpp"
 #include "tests/support/session_file.hpp"
 
 namespace stillhand::tests {

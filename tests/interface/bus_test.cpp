@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real bus on loopback: profiles load, endpoints match, samples arrive, peers are named.
-#include "services/runtime/bus/bus.hpp"
+#include "services/bus/bus.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 #include "idl/recording.h"
 #include "idl/session.h"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/bus_options.hpp"
 #include "tests/support/wait.hpp"
 

@@ -13,9 +13,9 @@
 
 #include "idl/control_loop.h"
 #include "places.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/bus/participant.hpp"
-#include "services/runtime/bus/type_tag.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/participant.hpp"
+#include "services/bus/type_tag.hpp"
 #include "tests/support/bus_options.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"

@@ -3,7 +3,7 @@
 // out as the IDL lists it, so that a field added there and forgotten in a codec shows; rig and
 // stamp_ns are the publisher's and stay 0.  From the bus a core's struct is taken apart completely,
 // so that a field added there does not compile until it is looked at here.
-#include "services/cancellation/codec.hpp"
+#include "services/messages/cancellation/codec.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 #include <tuple>
 #include <vector>
 
-#include "services/display/codec.hpp"
-#include "services/human_operator/codec.hpp"
-#include "services/identification/codec.hpp"
-#include "services/motion/codec.hpp"
-#include "services/rig/codec.hpp"
-#include "services/sensing/codec.hpp"
+#include "services/messages/display/codec.hpp"
+#include "services/messages/human_operator/codec.hpp"
+#include "services/messages/identification/codec.hpp"
+#include "services/messages/motion/codec.hpp"
+#include "services/messages/rig/codec.hpp"
+#include "services/messages/sensing/codec.hpp"
 #include "tests/support/idl_fields.hpp"
 
 namespace stillhand {

@@ -11,8 +11,8 @@
 #include "idl/clockPubSubTypes.h"
 #include "idl/control_loopPubSubTypes.h"
 #include "idl/sessionPubSubTypes.h"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/bus/type_tag.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
 namespace {

@@ -12,7 +12,7 @@
 #include <mutex>
 #include <vector>
 
-#include "services/display/core/tracking_display.hpp"
+#include "services/core/display/tracking_display.hpp"
 #include "tests/interface/mitigation_processes.hpp"
 
 namespace stillhand {

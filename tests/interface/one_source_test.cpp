@@ -10,8 +10,8 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "places.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/sources_codec.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/sources_codec.hpp"
 #include "tests/support/bus_options.hpp"
 #include "tests/support/wait.hpp"
 

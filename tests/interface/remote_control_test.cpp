@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Commands from outside of a session, on the real bus.
-#include "services/runtime/remote_control.hpp"
+#include "services/bus/remote_control.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -20,8 +20,8 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "places.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/sources_codec.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/sources_codec.hpp"
 #include "tests/support/bus_options.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/own_domain.hpp"
@@ -33,12 +33,12 @@ namespace {
 using support::eventually;
 
 constexpr const char* kProfiles = STILLHAND_SOURCE "/qos/profiles.xml";
-constexpr Tick kLead = 20;  // of motion, services/motion/shell.cpp
+constexpr Tick kLead = 20;  // of motion, services/processes/motion/shell.cpp
 // 0.1 m at 0.5 Hz: 0.31 m/s at the middle of the travel.
 constexpr double kTravel_m = 0.1;
 constexpr double kOmega_rad_s = std::numbers::pi;
 constexpr double kMoves_m_s = 0.2;
-constexpr double kRest_m_s = 0.001;                 // services/rig/shell.cpp
+constexpr double kRest_m_s = 0.001;                 // services/processes/rig/shell.cpp
 constexpr Tick kHeld = -2;                          // idl/README.md, command_tick
 constexpr std::chrono::milliseconds kLifeSign{30};  // ten in the lease of 300 ms
 
@@ -188,7 +188,8 @@ TEST_F(RigProcessTest, AfterAnEmergencyStopThePlatformBrakesWhateverMotionComman
   stop.asker("test");
   request_.write(stop);
   ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
-  // From any speed in 300 ticks (services/rig/shell.cpp); commands go on to ask for motion.
+  // From any speed in 300 ticks (services/processes/rig/shell.cpp); commands go on to ask for
+  // motion.
   const Tick stopped_tick = tick_;
   ASSERT_TRUE(eventually([this, stopped_tick] { return tick_ > stopped_tick + 400; }));
   EXPECT_LT(speed_m_s_, kRest_m_s);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A secured bus on loopback, with the folders that deploy/security/make.sh makes: what is refused
 // before the bus opens, and what a service may do.  Strangers: strangers_test.cpp.
-#include "services/runtime/bus/security.hpp"
+#include "services/bus/security.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 #include "idl/recording.h"
 #include "idl/session.h"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/bus/participant.hpp"
+#include "services/bus/participant.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/motion_and_rig.hpp"
 #include "tests/support/security_folder.hpp"
 

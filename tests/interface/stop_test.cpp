@@ -9,9 +9,9 @@
 
 #include "idl/session.h"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/process/domain.hpp"
+#include "services/bus/bus.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/domain.hpp"
 #include "tests/support/bus_options.hpp"
 
 namespace stillhand::stop {

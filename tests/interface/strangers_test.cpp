@@ -17,11 +17,11 @@
 
 #include "fast_dds/names.hpp"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/bus/participant.hpp"
-#include "services/runtime/bus/playback.hpp"
-#include "services/runtime/bus/security.hpp"
-#include "services/runtime/bus/type_tag.hpp"
+#include "services/bus/participant.hpp"
+#include "services/bus/playback.hpp"
+#include "services/bus/security.hpp"
+#include "services/bus/type_tag.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/motion_and_rig.hpp"
 #include "tests/support/security_folder.hpp"
 

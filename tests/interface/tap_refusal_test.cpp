@@ -11,8 +11,8 @@
 
 #include "fast_dds/names.hpp"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/bus/tap.hpp"
+#include "services/bus/tap.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/own_domain.hpp"
 
 namespace stillhand::runtime {

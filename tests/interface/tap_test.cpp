@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real bus on loopback: a tap that reads in batches hears what one hears that Fast DDS feeds.
-#include "services/runtime/bus/tap.hpp"
+#include "services/bus/tap.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "places.hpp"
-#include "services/runtime/bus/bus.hpp"
+#include "services/bus/bus.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
 

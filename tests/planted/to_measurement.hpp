@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "services/diagnosis/core/measurement.hpp"
+#include "services/core/diagnosis/measurement.hpp"
 #include "tests/planted/recording.hpp"
 
 namespace stillhand::planted {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "services/runtime/bus/bus.hpp"
+#include "services/bus/bus.hpp"
 #include "tests/support/own_domain.hpp"
 
 namespace stillhand::support {

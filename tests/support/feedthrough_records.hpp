@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "services/identification/core/record.hpp"
-#include "services/signal/butterworth.hpp"
-#include "services/signal/difference_model.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/identification/record.hpp"
+#include "services/core/signal/butterworth.hpp"
+#include "services/core/signal/difference_model.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::support {
 

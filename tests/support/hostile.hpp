@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "services/contract/tick.hpp"
+#include "services/core/contract/tick.hpp"
 
 /// Parts of property tests: draws that try the worst, and the shortest sequence that fails.
 namespace stillhand::support {

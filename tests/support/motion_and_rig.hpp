@@ -8,7 +8,7 @@
 
 #include "idl/control_loop.h"
 #include "places.hpp"
-#include "services/runtime/bus/bus.hpp"
+#include "services/bus/bus.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
 
 namespace stillhand::tests {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::support {
 

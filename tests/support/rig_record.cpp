@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/rig_record.hpp"
 
-#include "services/rig/core/chain.hpp"
-#include "services/sensing/core/conditioner.hpp"
-#include "services/signal/butterworth.hpp"
+#include "services/core/rig/chain.hpp"
+#include "services/core/sensing/conditioner.hpp"
+#include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::simulated {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "services/admittance/core/arm_model.hpp"
-#include "services/admittance/core/line_responses.hpp"
-#include "services/rig/core/rig.hpp"
+#include "services/core/admittance/arm_model.hpp"
+#include "services/core/admittance/line_responses.hpp"
+#include "services/core/rig/rig.hpp"
 
 /// Records of the simulated rig with the sensors and filters of a session, in one process.
 namespace stillhand::simulated {

@@ -14,8 +14,8 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
 
 namespace stillhand::tests {
 

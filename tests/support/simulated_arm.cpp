@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "services/population/population.hpp"
+#include "services/core/population/population.hpp"
 
 namespace stillhand::simulated {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/recording/core/recording.hpp"
+#include "services/core/recording/recording.hpp"
 
 /// Recordings of a body that is known, and what loggers, sensors and people do to them.
 namespace stillhand::spoiled {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::support {
 

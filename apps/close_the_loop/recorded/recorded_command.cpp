@@ -3,16 +3,16 @@
 
 #include "apps/close_the_loop/output.hpp"
 #include "apps/close_the_loop/recorded/recorded_output.hpp"
-#include "apps/measurement/read_options.hpp"
-#include "apps/report/command_line.hpp"
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/progress.hpp"
-#include "apps/report/staged_folder.hpp"
-#include "services/cancellation/control_model_file.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/model_file.hpp"
-#include "services/runtime/process/run_jobs.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "apps/libraries/measurement/read_options.hpp"
+#include "apps/libraries/report/command_line.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/progress.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
+#include "services/files/diagnosis/model_file.hpp"
+#include "services/system/process/run_jobs.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -7,11 +7,11 @@
 #include <array>
 #include <cmath>
 
-#include "apps/measurement/read.hpp"
-#include "services/cancellation/core/config.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/diagnosis/core/working_set.hpp"
+#include "apps/libraries/measurement/read.hpp"
+#include "services/core/cancellation/config.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "apps/close_the_loop/recorded/decision.hpp"
 #include "apps/close_the_loop/verdict.hpp"
-#include "apps/measurement/read.hpp"
+#include "apps/libraries/measurement/read.hpp"
 
 namespace stillhand::close_the_loop {
 

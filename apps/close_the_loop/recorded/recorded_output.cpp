@@ -8,8 +8,8 @@
 #include "apps/close_the_loop/output.hpp"
 #include "apps/close_the_loop/recorded/recorded_words.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/report/or_null.hpp"
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/or_null.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "version.hpp"
 
 namespace stillhand::close_the_loop {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "apps/close_the_loop/recorded/recorded_loop.hpp"
-#include "apps/report/page.hpp"
-#include "apps/report/plot/figure.hpp"
+#include "apps/libraries/report/page.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
 
 namespace stillhand::close_the_loop {
 

@@ -7,15 +7,15 @@
 #include <cmath>
 #include <numeric>
 
-#include "apps/measurement/bridge.hpp"
+#include "apps/libraries/measurement/bridge.hpp"
 #include "apps/predict/predict.hpp"
-#include "services/cancellation/core/model_check.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/flag.hpp"
-#include "services/contract/tick.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "services/core/cancellation/model_check.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/flag.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "services/cancellation/core/control_model.hpp"
-#include "services/diagnosis/core/carried.hpp"
-#include "services/diagnosis/core/measurement.hpp"
-#include "services/statistics/ratio.hpp"
+#include "services/core/cancellation/control_model.hpp"
+#include "services/core/diagnosis/carried.hpp"
+#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/statistics/ratio.hpp"
 
 namespace stillhand::close_the_loop {
 

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <utility>
 
-#include "services/contract/config_error.hpp"
-#include "services/statistics/multiple_testing.hpp"
-#include "services/statistics/t_test.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/statistics/multiple_testing.hpp"
+#include "services/core/statistics/t_test.hpp"
 
 namespace stillhand::compare {
 namespace {

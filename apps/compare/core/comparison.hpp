@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "services/statistics/descriptive.hpp"
-#include "services/statistics/ratio.hpp"
+#include "services/core/statistics/descriptive.hpp"
+#include "services/core/statistics/ratio.hpp"
 
 namespace stillhand::compare {
 

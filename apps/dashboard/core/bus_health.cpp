@@ -5,8 +5,8 @@
 #include <sstream>
 #include <utility>
 
-#include "services/contract/time_difference.hpp"
-#include "services/contract/units.hpp"
+#include "services/core/contract/time_difference.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::dashboard {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "apps/dashboard/core/log_histogram.hpp"
-#include "services/contract/tick.hpp"
-#include "services/contract/time_difference.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "services/contract/config_field.hpp"
+#include "services/core/contract/config_field.hpp"
 
 namespace stillhand::dashboard {
 

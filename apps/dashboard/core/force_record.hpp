@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "services/contract/tick.hpp"
+#include "services/core/contract/tick.hpp"
 
 namespace stillhand::dashboard {
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "services/signal/log_bins.hpp"
+#include "services/core/signal/log_bins.hpp"
 
 namespace stillhand::dashboard {
 

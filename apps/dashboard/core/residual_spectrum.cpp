@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "services/signal/spectrum.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::dashboard {
 

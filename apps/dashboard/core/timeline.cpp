@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "services/contract/time_difference.hpp"
+#include "services/core/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

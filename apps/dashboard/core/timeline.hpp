@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "apps/dashboard/core/alarm.hpp"
-#include "services/contract/tick.hpp"
-#include "services/contract/trial.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/contract/trial.hpp"
 
 namespace stillhand::dashboard {
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "services/contract/time_difference.hpp"
+#include "services/core/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/dashboard/core/log_histogram.hpp"
-#include "services/contract/tick.hpp"
-#include "services/recording/core/loss_count.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/recording/loss_count.hpp"
 
 namespace stillhand::dashboard {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "services/contract/tick.hpp"
+#include "services/core/contract/tick.hpp"
 
 namespace stillhand::dashboard {
 

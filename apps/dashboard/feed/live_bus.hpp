@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/dashboard/feed/rigs.hpp"
-#include "services/recording/core/held_message.hpp"
-#include "services/runtime/bus/tap.hpp"
+#include "services/bus/tap.hpp"
+#include "services/core/recording/held_message.hpp"
 
 namespace stillhand::dashboard {
 

@@ -8,10 +8,10 @@
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/session_state.hpp"
-#include "services/contract/time_difference.hpp"
-#include "services/contract/units.hpp"
-#include "services/device_rig/core/parts_note.hpp"
-#include "services/recording/sample_clock.hpp"
+#include "services/core/contract/time_difference.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/device_rig/parts_note.hpp"
+#include "services/core/recording/sample_clock.hpp"
 
 namespace stillhand::dashboard {
 

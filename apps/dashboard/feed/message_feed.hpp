@@ -19,7 +19,7 @@
 #include "idl/recording.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "services/contract/trial.hpp"
+#include "services/core/contract/trial.hpp"
 
 namespace stillhand::dashboard {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "apps/dashboard/view/words.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/time_difference.hpp"
-#include "services/contract/units.hpp"
-#include "services/runtime/trial_codec.hpp"
+#include "services/bus/trial_codec.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/time_difference.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::dashboard {
 

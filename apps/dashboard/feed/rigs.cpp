@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "services/recording/sample_clock.hpp"
+#include "services/core/recording/sample_clock.hpp"
 
 namespace stillhand::dashboard {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "services/contract/units.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::dashboard {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "apps/dashboard/server/http_connection.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::dashboard {
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::dashboard {
 

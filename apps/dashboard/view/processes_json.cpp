@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "services/contract/time_difference.hpp"
+#include "services/core/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

@@ -9,7 +9,7 @@
 #include "apps/dashboard/view/processes_json.hpp"
 #include "apps/dashboard/view/view_json.hpp"
 #include "apps/dashboard/view/words.hpp"
-#include "services/runtime/trial_codec.hpp"
+#include "services/bus/trial_codec.hpp"
 
 namespace stillhand::dashboard {
 

@@ -7,8 +7,8 @@
 
 #include "apps/dashboard/feed/message_feed.hpp"
 #include "apps/dashboard/feed/rigs.hpp"
-#include "services/contract/tick.hpp"
-#include "services/display/core/tracking_display.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/display/tracking_display.hpp"
 
 namespace stillhand::dashboard {
 

@@ -9,7 +9,7 @@
 
 #include "apps/dashboard/core/residual_spectrum.hpp"
 #include "apps/dashboard/view/words.hpp"
-#include "services/contract/time_difference.hpp"
+#include "services/core/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/diagnose/page/binning.hpp"
-#include "apps/report/plot/figure.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
 
 namespace stillhand::diagnose {
 

@@ -9,9 +9,9 @@
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/report_tables.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/plot/figure_table.hpp"
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/plot/figure_table.hpp"
+#include "apps/libraries/report/text.hpp"
 
 namespace stillhand::diagnose {
 namespace {

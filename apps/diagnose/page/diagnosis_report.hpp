@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/page.hpp"
-#include "apps/report/staged_folder.hpp"
-#include "services/diagnosis/core/diagnose.hpp"
-#include "services/diagnosis/core/measurement.hpp"
+#include "apps/libraries/report/page.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/diagnosis/measurement.hpp"
 
 namespace stillhand::diagnose {
 

@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "apps/diagnose/page/wording.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/signal/difference_model.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <Eigen/Dense>
 
-#include "services/diagnosis/core/detection/detection_limit.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/working_set.hpp"
+#include "services/core/diagnosis/detection/detection_limit.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "services/diagnosis/core/diagnose.hpp"
-#include "services/diagnosis/core/fitting/number_errors.hpp"
-#include "services/diagnosis/core/measurement.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
-#include "services/diagnosis/core/signals.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/diagnosis/fitting/number_errors.hpp"
+#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/signals.hpp"
 
 namespace stillhand::diagnose {
 

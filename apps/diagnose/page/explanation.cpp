@@ -8,9 +8,9 @@
 #include "apps/diagnose/page/explanation_over_time.hpp"
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "services/diagnosis/core/effect_sizes.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/signal/spectrum.hpp"
+#include "services/core/diagnosis/effect_sizes.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "apps/diagnose/page/binning.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "services/diagnosis/core/fitting/blocks.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/core/diagnosis/fitting/blocks.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {
 namespace {

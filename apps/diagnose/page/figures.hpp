@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/diagnose/page/evidence.hpp"
-#include "apps/report/plot/figure.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
 
 namespace stillhand::diagnose {
 

@@ -3,7 +3,7 @@
 
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/text.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/report/text.hpp"
-#include "services/signal/spectrum.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -7,10 +7,10 @@
 #include "apps/diagnose/page/binning.hpp"
 #include "apps/diagnose/page/law_parts.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/report/excerpt.hpp"
-#include "services/diagnosis/core/effect_sizes.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/model/loop_sizes.hpp"
+#include "apps/libraries/report/excerpt.hpp"
+#include "services/core/diagnosis/effect_sizes.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/loop_sizes.hpp"
 
 namespace stillhand::diagnose {
 namespace {

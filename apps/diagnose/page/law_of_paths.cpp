@@ -8,10 +8,10 @@
 #include "apps/diagnose/page/binning.hpp"
 #include "apps/diagnose/page/law_parts.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "services/diagnosis/core/effect_sizes.hpp"
-#include "services/diagnosis/core/excited_band.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/signal/spectrum.hpp"
+#include "services/core/diagnosis/effect_sizes.hpp"
+#include "services/core/diagnosis/excited_band.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/diagnose/page/figures.hpp"
-#include "services/diagnosis/core/model/size.hpp"
+#include "services/core/diagnosis/model/size.hpp"
 
 /// Parts of law_of().
 namespace stillhand::diagnose {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 
 namespace stillhand::diagnose {
 

@@ -11,8 +11,8 @@
 #include "apps/diagnose/page/effect_numbers.hpp"
 #include "apps/diagnose/page/questions.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/report/text.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/diagnose/page/evidence.hpp"
-#include "apps/report/page.hpp"
+#include "apps/libraries/report/page.hpp"
 
 namespace stillhand::diagnose {
 

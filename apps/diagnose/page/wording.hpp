@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 
 namespace stillhand::diagnose {
 

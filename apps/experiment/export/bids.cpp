@@ -9,10 +9,10 @@
 
 #include "apps/experiment/export/bids_texts.hpp"
 #include "apps/experiment/export/set_files.hpp"
-#include "apps/experiment/file/experiment_file.hpp"
+#include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "apps/study/study.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::experiment {
 namespace {

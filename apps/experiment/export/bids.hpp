@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/experiment/export/data_set.hpp"
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 
 namespace stillhand::experiment {
 

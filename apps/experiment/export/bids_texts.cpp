@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "version.hpp"
 
 namespace stillhand::experiment {

@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "apps/experiment/sealed_assignment.hpp"
-#include "apps/measurement/session.hpp"
-#include "apps/measurement/session_trials.hpp"
+#include "apps/libraries/measurement/session.hpp"
+#include "apps/libraries/measurement/session_trials.hpp"
 #include "apps/study/recorded/recorded_session.hpp"
 #include "apps/study/study.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::experiment {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "apps/experiment/folder.hpp"
-#include "services/contract/trial.hpp"
-#include "services/identification/core/tracking_metrics.hpp"
-#include "services/recording/core/recording.hpp"
+#include "services/core/contract/trial.hpp"
+#include "services/core/identification/tracking_metrics.hpp"
+#include "services/core/recording/recording.hpp"
 
 /// What an experiment's folder holds, for an export: facts of the plan, the journals and the
 /// recordings.  Free text of a person (reasons, notes) and times of day are left out here, so no
@@ -76,7 +76,8 @@ using OnSession = std::function<bool(std::int64_t done, std::int64_t all)>;
 DataSet data_set_of(const Folder& folder, const OnSession& on_session);
 
 /// The measured samples of one trial at 1 kHz, one row a tick until its end: `time_s` from 0, the
-/// columns of the CSV format (services/recording/README.md).  A value that was lost is NaN.
+/// columns of the CSV format (services/processes/recording/README.md).  A value that was lost is
+/// NaN.
 /// @throws ConfigError for a trial without two samples
 recording::Recording rows_of(const Folder& folder, const ExportedParticipant& participant,
                              const ExportedTrial& trial);

@@ -14,15 +14,15 @@
 #include "apps/experiment/export/bids_texts.hpp"
 #include "apps/experiment/export/set_files.hpp"
 #include "apps/experiment/export/tables.hpp"
-#include "apps/experiment/file/experiment_file.hpp"
+#include "apps/libraries/experiment/file/experiment_file.hpp"
+#include "apps/libraries/report/progress.hpp"
 #include "apps/recordings/csv_tables.hpp"
 #include "apps/recordings/hdf5_tables.hpp"
 #include "apps/recordings/mat_tables.hpp"
-#include "apps/report/progress.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/runtime/process/stop.hpp"
-#include "services/settings/check_name.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::experiment {
 namespace {

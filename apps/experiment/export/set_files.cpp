@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "services/recording/file_io.hpp"
-#include "services/rig/digest.hpp"
+#include "services/files/digest/digest.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::experiment {
 

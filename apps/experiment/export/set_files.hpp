@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 
 namespace stillhand::experiment {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "apps/study/study.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -105,7 +105,8 @@ void write_answers(const DataSet& set, recordings::TableFile& file) {
   table.finish();
 }
 
-// The CSV format of recordings (services/recording/README.md): a lost sample is a missing row.
+// The CSV format of recordings (services/processes/recording/README.md): a lost sample is a missing
+// row.
 void write_samples(const Folder& folder, const ExportedParticipant& participant,
                    const ExportedTrial& trial, recordings::TableFile& file) {
   const recording::Recording rows = rows_of(folder, participant, trial);

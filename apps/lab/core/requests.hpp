@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/signal/newest_of_each.hpp"
+#include "services/core/signal/newest_of_each.hpp"
 
 namespace stillhand::lab {
 

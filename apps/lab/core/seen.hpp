@@ -11,7 +11,7 @@
 
 #include "apps/lab/core/prompt.hpp"
 #include "apps/lab/core/requests.hpp"
-#include "services/contract/tick.hpp"
+#include "services/core/contract/tick.hpp"
 
 namespace stillhand::lab {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apps/lab/core/seen.hpp"
-#include "services/contract/trial.hpp"
+#include "services/core/contract/trial.hpp"
 
 namespace stillhand::lab {
 

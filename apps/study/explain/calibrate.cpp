@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "apps/study/explain/slopes.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/settings/yaml_text.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/contract/expects.hpp"
-#include "services/settings/clamp_fields.hpp"
+#include "services/core/contract/clamp_fields.hpp"
+#include "services/core/contract/expects.hpp"
 
 namespace stillhand::study {
 namespace {

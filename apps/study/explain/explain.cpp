@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "apps/study/explain/slopes.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/expects.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/expects.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "apps/report/plot/figure_table.hpp"
+#include "apps/libraries/report/plot/figure_table.hpp"
 
 namespace stillhand::study {
 namespace {

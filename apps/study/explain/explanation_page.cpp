@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/study/explain/explanation_output.hpp"
 #include "apps/study/report_cells.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "services/core/statistics/descriptive.hpp"
 #include "version.hpp"
 
 namespace stillhand::study {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <span>
 
-#include "services/contract/expects.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/expects.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {

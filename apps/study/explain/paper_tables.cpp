@@ -4,7 +4,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
-#include "apps/session/paper_table.hpp"
+#include "apps/libraries/session/paper_table.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "apps/session/paper_table.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/run_jobs.hpp"
+#include "apps/libraries/session/paper_table.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/run_jobs.hpp"
 
 namespace stillhand::study {
 namespace {

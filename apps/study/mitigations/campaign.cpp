@@ -9,9 +9,9 @@
 
 #include "apps/study/mitigations/choices.hpp"
 #include "apps/study/study.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/run_jobs.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/statistics/descriptive.hpp"
+#include "services/system/process/run_jobs.hpp"
 
 namespace stillhand::study {
 namespace {

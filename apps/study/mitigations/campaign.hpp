@@ -8,8 +8,8 @@
 
 #include "apps/study/mitigations/cases.hpp"
 #include "apps/study/mitigations/mitigated_trial.hpp"
-#include "services/statistics/counts.hpp"
-#include "services/statistics/ratio.hpp"
+#include "services/core/statistics/counts.hpp"
+#include "services/core/statistics/ratio.hpp"
 
 namespace stillhand::study {
 

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "apps/report/plot/draw.hpp"
-#include "apps/report/progress.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/progress.hpp"
 #include "apps/study/mitigations/campaign_output.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/system/process/stop.hpp"
 
 namespace stillhand::study {
 

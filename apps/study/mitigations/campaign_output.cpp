@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/report/plot/figure_table.hpp"
+#include "apps/libraries/report/plot/figure_table.hpp"
 #include "apps/study/csv_cells.hpp"
 
 namespace stillhand::study {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/page.hpp"
-#include "apps/report/plot/figure.hpp"
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/page.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 #include "apps/study/mitigations/campaign.hpp"
 
 namespace stillhand::study {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/study/mitigations/campaign_output.hpp"
 #include "version.hpp"
 

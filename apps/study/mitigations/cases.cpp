@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "apps/session/protocol.hpp"
+#include "apps/libraries/session/protocol.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/study/conditions.hpp"
 #include "apps/study/mitigations/design.hpp"
 #include "apps/study/mitigations/person_models.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
 
 /// The cells of the table of mitigations: what is done, in which task, with whose model, in which
 /// motion.

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "apps/study/study.hpp"
-#include "services/runtime/process/run_jobs.hpp"
-#include "services/signal/reference.hpp"
+#include "services/core/signal/reference.hpp"
+#include "services/system/process/run_jobs.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {

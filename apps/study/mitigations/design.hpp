@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "services/admittance/core/arm_model.hpp"
-#include "services/cancellation/parts/stick_impedance.hpp"
-#include "services/signal/difference_model.hpp"
+#include "services/core/admittance/arm_model.hpp"
+#include "services/core/cancellation/parts/stick_impedance.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 /// Parameters by optimisation over a population of fitted arms, before a session.  Nothing here
 /// looks at a trial.

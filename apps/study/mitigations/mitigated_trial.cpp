@@ -4,17 +4,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "apps/session/loop.hpp"
-#include "apps/session/protocol.hpp"
+#include "apps/libraries/session/loop.hpp"
+#include "apps/libraries/session/protocol.hpp"
 #include "apps/study/subject_session.hpp"
-#include "services/display/core/tracking_display.hpp"
-#include "services/human_operator/core/crossover_operator.hpp"
-#include "services/motion/core/motion_generator.hpp"
-#include "services/population/task.hpp"
-#include "services/rig/plant.hpp"
-#include "services/signal/butterworth.hpp"
-#include "services/signal/random.hpp"
-#include "services/signal/second_order_lag.hpp"
+#include "services/core/display/tracking_display.hpp"
+#include "services/core/human_operator/crossover_operator.hpp"
+#include "services/core/motion/motion_generator.hpp"
+#include "services/core/population/task.hpp"
+#include "services/core/rig/plant.hpp"
+#include "services/core/signal/butterworth.hpp"
+#include "services/core/signal/random.hpp"
+#include "services/core/signal/second_order_lag.hpp"
 
 namespace stillhand::study {
 namespace {

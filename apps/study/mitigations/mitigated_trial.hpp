@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "apps/study/mitigations/cases.hpp"
-#include "services/motion/core/motion_trajectory.hpp"
-#include "services/population/population.hpp"
+#include "services/core/motion/motion_trajectory.hpp"
+#include "services/core/population/population.hpp"
 
 namespace stillhand::study {
 

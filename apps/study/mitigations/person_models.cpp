@@ -5,19 +5,19 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/session/loop.hpp"
-#include "apps/session/protocol.hpp"
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/admittance/core/interleaved_multisines.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/identification/core/arx.hpp"
-#include "services/identification/core/identifier.hpp"
-#include "services/identification/core/output_error.hpp"
-#include "services/identification/core/rate_conversion.hpp"
-#include "services/motion/core/motion_generator.hpp"
-#include "services/population/task.hpp"
-#include "services/rig/plant.hpp"
-#include "services/signal/butterworth.hpp"
+#include "apps/libraries/session/loop.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/admittance/interleaved_multisines.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/identification/arx.hpp"
+#include "services/core/identification/identifier.hpp"
+#include "services/core/identification/output_error.hpp"
+#include "services/core/identification/rate_conversion.hpp"
+#include "services/core/motion/motion_generator.hpp"
+#include "services/core/population/task.hpp"
+#include "services/core/rig/plant.hpp"
+#include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -65,7 +65,7 @@ identification::Record moved(const population::Subject& subject, bool pegged, do
   return out;
 }
 
-// Force and motion at once on a free stick, as services/admittance wants it.
+// Force and motion at once on a free stick, as services/core/admittance wants it.
 admittance::ArmValues fitted_arm(const rig::BodyConfig& body, std::uint64_t seed, RecordSeed use) {
   constexpr std::int64_t kEvery = 4;
   const admittance::Excitation driven = admittance::design({.rate_hz = kControlRateHz});

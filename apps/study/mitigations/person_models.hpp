@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "apps/study/mitigations/design.hpp"
-#include "services/admittance/core/arm_model.hpp"
-#include "services/identification/core/record.hpp"
-#include "services/population/population.hpp"
-#include "services/signal/difference_model.hpp"
+#include "services/core/admittance/arm_model.hpp"
+#include "services/core/identification/record.hpp"
+#include "services/core/population/population.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::study {
 

@@ -12,7 +12,7 @@
 #include "apps/study/recorded/find_sessions.hpp"
 #include "apps/study/recorded/recorded_trial.hpp"
 #include "apps/study/study.hpp"
-#include "services/statistics/t_test.hpp"
+#include "services/core/statistics/t_test.hpp"
 
 namespace stillhand::study {
 

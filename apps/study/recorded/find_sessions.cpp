@@ -7,9 +7,9 @@
 #include <tuple>
 #include <utility>
 
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "services/cancellation/codec.hpp"
+#include "services/messages/cancellation/codec.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/measurement/session_trials.hpp"
-#include "apps/session/session_recording.hpp"
+#include "apps/libraries/measurement/session_trials.hpp"
+#include "apps/libraries/session/session_recording.hpp"
 #include "apps/study/conditions.hpp"
 
 /// Which model the motor had in a recorded trial, and which one it should have had.  A model counts

@@ -11,16 +11,16 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/measurement/session_trials.hpp"
-#include "apps/session/measured_ticks.hpp"
-#include "apps/session/session_recording.hpp"
+#include "apps/libraries/measurement/session_trials.hpp"
+#include "apps/libraries/session/measured_ticks.hpp"
+#include "apps/libraries/session/session_recording.hpp"
 #include "apps/study/recorded/model_in_use.hpp"
 #include "apps/study/trial_analysis.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/flag.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/vehicle/driven_motion.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/flag.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/vehicle/driven_motion.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::study {
 namespace {

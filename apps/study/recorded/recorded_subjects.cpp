@@ -11,7 +11,7 @@
 
 #include "apps/study/recorded/recorded_session.hpp"
 #include "apps/study/recorded/selection.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {

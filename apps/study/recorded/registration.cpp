@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/recorded/registration.hpp"
 
-#include "apps/experiment/file/experiment_file.hpp"
+#include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "apps/study/conditions.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/rig/digest.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/digest/digest.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::study {
 

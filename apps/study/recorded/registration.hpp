@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/experiment/file/standing.hpp"
+#include "apps/libraries/experiment/file/standing.hpp"
 
 namespace stillhand::study {
 

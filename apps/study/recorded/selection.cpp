@@ -11,7 +11,7 @@
 #include <span>
 
 #include "apps/study/recorded/average.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::study {
 namespace {

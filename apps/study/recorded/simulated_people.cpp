@@ -10,15 +10,15 @@
 #include <utility>
 
 #include "apps/close_the_loop/control_model.hpp"
-#include "apps/experiment/core/plan.hpp"
+#include "apps/libraries/experiment/core/plan.hpp"
 #include "apps/study/recorded/average.hpp"
 #include "apps/study/trial_analysis.hpp"
-#include "services/cancellation/control_model_file.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/runtime/process/run_jobs.hpp"
-#include "services/statistics/multiple_testing.hpp"
-#include "services/statistics/signed_rank.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/statistics/multiple_testing.hpp"
+#include "services/core/statistics/signed_rank.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/system/process/run_jobs.hpp"
 
 namespace stillhand::study {
 namespace {

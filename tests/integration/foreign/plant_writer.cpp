@@ -11,9 +11,9 @@
 #include <string>
 
 #include "places.hpp"
-#include "services/runtime/bus/participant.hpp"
-#include "services/runtime/bus/serialized_sample.hpp"
-#include "services/runtime/process/stop.hpp"
+#include "services/bus/participant.hpp"
+#include "services/bus/serialized_sample.hpp"
+#include "services/system/process/stop.hpp"
 #include "tests/plant_described.hpp"
 #include "tests/support/wait.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <iostream>
 
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/files/recording/file_io.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand::recording;

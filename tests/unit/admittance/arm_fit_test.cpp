@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // 1 s.
-#include "services/admittance/core/arm_fit.hpp"
+#include "services/core/admittance/arm_fit.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "services/contract/config_error.hpp"
-#include "services/rig/core/body_response.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/rig/body_response.hpp"
 #include "tests/support/simulated_arm.hpp"
 
 namespace stillhand::admittance {

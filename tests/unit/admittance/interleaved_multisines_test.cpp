@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/admittance/core/interleaved_multisines.hpp"
+#include "services/core/admittance/interleaved_multisines.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::admittance {
 namespace {

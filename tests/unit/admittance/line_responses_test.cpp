@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/admittance/core/line_responses.hpp"
+#include "services/core/admittance/line_responses.hpp"
 
 #include <gmock/gmock.h>
 
 #include <complex>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/simulated_arm.hpp"
 
 namespace stillhand::admittance {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // 3 s.
-#include "services/admittance/core/relation.hpp"
+#include "services/core/admittance/relation.hpp"
 
 #include <gmock/gmock.h>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/rig_record.hpp"
 
 namespace stillhand::admittance {

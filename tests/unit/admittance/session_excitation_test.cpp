@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/admittance/core/session_excitation.hpp"
+#include "services/core/admittance/session_excitation.hpp"
 
 #include <gmock/gmock.h>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::admittance {
 namespace {

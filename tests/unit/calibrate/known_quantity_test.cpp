@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::calibrate {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gain and phase followed online, Eq. CC-10 to CC-13, on a hand that is a spring, a damper and a
 // mass.
-#include "services/cancellation/parts/adaptive_gain.hpp"
+#include "services/core/cancellation/parts/adaptive_gain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "services/signal/random.hpp"
+#include "services/core/signal/random.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::cancellation {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. CC-5 against its statics and its frequency response.
-#include "services/cancellation/parts/command_filter.hpp"
+#include "services/core/cancellation/parts/command_filter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A control model as a file: what was written is read back bit for bit, and what was tampered with
 // is refused by name.
-#include "services/cancellation/control_model_file.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

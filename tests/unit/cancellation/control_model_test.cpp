@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "services/cancellation/parts/countermeasure.hpp"
-#include "services/contract/units.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::cancellation {
 namespace {

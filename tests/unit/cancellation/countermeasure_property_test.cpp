@@ -10,8 +10,8 @@
 #include <numbers>
 #include <ostream>
 
-#include "services/cancellation/core/model_check.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
+#include "services/core/cancellation/model_check.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
 #include "tests/support/hostile.hpp"
 
 namespace stillhand::cancellation {

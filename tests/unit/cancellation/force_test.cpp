@@ -7,10 +7,10 @@
 #include <limits>
 #include <vector>
 
-#include "services/cancellation/parts/countermeasure.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/identification/core/rate_conversion.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/identification/rate_conversion.hpp"
+#include "services/core/signal/random.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::cancellation {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/cancellation/core/model_schedule.hpp"
+#include "services/core/cancellation/model_schedule.hpp"
 
 #include <gtest/gtest.h>
 

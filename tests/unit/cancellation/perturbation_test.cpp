@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/cancellation/parts/perturbation.hpp"
+#include "services/core/cancellation/parts/perturbation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/cancellation/parts/countermeasure.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/cancellation/core/sampling.hpp"
+#include "services/core/cancellation/sampling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include "services/cancellation/parts/countermeasure.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/cancellation/core/trial_arming.hpp"
+#include "services/core/cancellation/trial_arming.hpp"
 
 #include <gtest/gtest.h>
 

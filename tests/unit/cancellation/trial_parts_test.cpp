@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mitigations of a session's trials, one after the other, as the process runs them: METHOD
 // CC-18.  The making thread is real.  About a second.
-#include "services/cancellation/trial_parts.hpp"
+#include "services/processes/cancellation/trial_parts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Another host's clock from two-way exchanges, Eq. CK-1 to CK-5: against clocks that are known.
-#include "services/clock/core/clock_comparison.hpp"
+#include "services/core/clock/clock_comparison.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/signal/random.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::clock {
 namespace {

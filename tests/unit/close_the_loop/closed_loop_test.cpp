@@ -8,7 +8,7 @@
 #include <set>
 
 #include "apps/close_the_loop/session.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "apps/session/paper_table.hpp"
+#include "apps/libraries/session/paper_table.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/cancellation/core/control_model_filter.hpp"
-#include "services/cancellation/core/model_check.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
-#include "services/diagnosis/core/fitting/modes.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
-#include "services/population/population.hpp"
+#include "services/core/cancellation/control_model_filter.hpp"
+#include "services/core/cancellation/model_check.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/population/population.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::close_the_loop {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/units.hpp"
-#include "services/diagnosis/core/fitting/modes.hpp"
-#include "services/signal/difference_model.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "services/contract/units.hpp"
-#include "services/signal/delay_line.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/signal/delay_line.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::close_the_loop {

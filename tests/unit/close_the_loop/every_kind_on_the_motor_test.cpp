@@ -11,14 +11,14 @@
 
 #include "apps/close_the_loop/control_check.hpp"
 #include "apps/close_the_loop/control_model.hpp"
-#include "services/cancellation/control_model_file.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
-#include "services/contract/units.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
-#include "services/diagnosis/core/model/interpolation.hpp"
-#include "services/diagnosis/core/model/seen_range.hpp"
-#include "services/diagnosis/model_file.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/interpolation.hpp"
+#include "services/core/diagnosis/model/seen_range.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
+#include "services/files/diagnosis/model_file.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::close_the_loop {

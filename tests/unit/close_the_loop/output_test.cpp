@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "services/rig/sealed_file.hpp"
+#include "services/files/rig/sealed_file.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

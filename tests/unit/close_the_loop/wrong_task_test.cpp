@@ -8,7 +8,7 @@
 
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/close_the_loop/session.hpp"
-#include "services/contract/tick.hpp"
+#include "services/core/contract/tick.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

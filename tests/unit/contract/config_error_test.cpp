@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/contract/config_field.hpp"
+#include "services/core/contract/config_field.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "services/contract/expects.hpp"
+#include "services/core/contract/expects.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand {

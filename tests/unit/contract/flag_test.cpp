@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/contract/flag.hpp"
+#include "services/core/contract/flag.hpp"
 
 #include <gtest/gtest.h>
 

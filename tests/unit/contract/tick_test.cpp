@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/contract/tick.hpp"
+#include "services/core/contract/tick.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/contract/time_difference.hpp"
+#include "services/core/contract/time_difference.hpp"
 
 #include <gtest/gtest.h>
 

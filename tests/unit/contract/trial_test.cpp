@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/contract/trial.hpp"
+#include "services/core/contract/trial.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/folder.hpp"
 
 namespace stillhand::dashboard {

@@ -11,9 +11,9 @@
 
 #include "apps/dashboard/view/snapshot_json.hpp"
 #include "apps/dashboard/view/view_json.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/session_file.hpp"
 

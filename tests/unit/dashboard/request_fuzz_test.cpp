@@ -11,7 +11,7 @@
 #include <set>
 
 #include "apps/dashboard/server/routes.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/folder.hpp"
 
 // Requests that are right, spoilt by a seeded generator: each has an answer that this page may

@@ -14,8 +14,8 @@
 
 #include "apps/deploy/host_files.hpp"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/real_time.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/real_time.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "apps/deploy/ports.hpp"
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/arming.hpp"
+#include "services/core/device_rig/arming.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-16: whose calibration a session accepts.
-#include "services/device_rig/calibration_file.hpp"
+#include "services/files/device_rig/calibration_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/contract/config_error.hpp"
-#include "services/settings/load.hpp"
-#include "services/settings/yaml_text.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/files/settings/yaml_text.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::device_rig {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-34.  Judges: the frames that the maker of moteus prints (mjbots/moteus,
 // docs/protocol/can.md), and the kernel's own struct canfd_frame.
-#include "services/device_rig/core/can_record.hpp"
+#include "services/core/device_rig/can_record.hpp"
 
 #include <gtest/gtest.h>
 #include <linux/can.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "services/device_rig/core/moteus_drive.hpp"
+#include "services/core/device_rig/moteus_drive.hpp"
 
 namespace stillhand::device_rig::moteus {
 namespace {

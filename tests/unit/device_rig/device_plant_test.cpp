@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of a rig of devices together, without a bus: a stick on a desk, whose drive is
 // emulated, with a simulated platform.
-#include "services/device_rig/device_plant.hpp"
+#include "services/devices/device_rig/device_plant.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/device_rig/emulated_drive.hpp"
 #include "tests/unit/device_rig/emulated_platform.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drive's thread against the emulator behind a pseudo-terminal.
-#include "services/device_rig/drive_link.hpp"
+#include "services/devices/device_rig/drive_link.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/system/process/clock.hpp"
 #include "tests/emulators/odrive_emulator.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/device_rig/emulated_drive.hpp"

@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "services/runtime/process/clock.hpp"
+#include "services/system/process/clock.hpp"
 #include "tests/emulators/moteus_emulator.hpp"
 #include "tests/emulators/serial_side.hpp"
 

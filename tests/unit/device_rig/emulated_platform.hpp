@@ -13,7 +13,7 @@
 #include <stop_token>
 #include <thread>
 
-#include "services/runtime/process/clock.hpp"
+#include "services/system/process/clock.hpp"
 #include "tests/emulators/platform_emulator.hpp"
 
 namespace stillhand::device_rig {

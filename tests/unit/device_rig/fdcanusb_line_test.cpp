@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/fdcanusb_line.hpp"
+#include "services/core/device_rig/fdcanusb_line.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

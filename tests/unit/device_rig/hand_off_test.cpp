@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-19: what a check with the hand off refuses.
-#include "services/device_rig/core/hand_off.hpp"
+#include "services/core/device_rig/hand_off.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-13.
-#include "services/device_rig/core/iio_value.hpp"
+#include "services/core/device_rig/iio_value.hpp"
 
 #include <gtest/gtest.h>
 

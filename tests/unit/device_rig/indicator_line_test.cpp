@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/indicator_line.hpp"
+#include "services/core/device_rig/indicator_line.hpp"
 
 #include <gtest/gtest.h>
 

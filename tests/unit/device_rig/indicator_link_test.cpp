@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/indicator_link.hpp"
+#include "services/devices/device_rig/indicator_link.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <mutex>
 #include <string>
 
-#include "services/contract/config_error.hpp"
-#include "services/device_rig/device_plant.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/devices/device_rig/device_plant.hpp"
+#include "services/system/process/clock.hpp"
 #include "tests/emulators/indicator_side.hpp"
 
 namespace stillhand::device_rig {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-35: a joystick's records.  No joystick was tried: a machine without /dev/uinput has none
 // to stand in.
-#include "services/device_rig/core/joystick_protocol.hpp"
+#include "services/core/device_rig/joystick_protocol.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/device_rig/core/joystick_record.hpp"
-#include "services/device_rig/joystick_port.hpp"
+#include "services/core/device_rig/joystick_record.hpp"
+#include "services/devices/device_rig/joystick_port.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::device_rig {

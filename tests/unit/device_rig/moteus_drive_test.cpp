@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rules of a torque command, judged by the emulator, which is written from the maker's
 // documents and shares no code with the driver.
-#include "services/device_rig/core/moteus_drive.hpp"
+#include "services/core/device_rig/moteus_drive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "services/device_rig/core/fdcanusb_line.hpp"
+#include "services/core/device_rig/fdcanusb_line.hpp"
 #include "tests/emulators/moteus_emulator.hpp"
 
 namespace stillhand::device_rig::moteus {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/moteus_frame.hpp"
+#include "services/core/device_rig/moteus_frame.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/device_rig/core/moteus_drive.hpp"
+#include "services/core/device_rig/moteus_drive.hpp"
 #include "tests/support/hex.hpp"
 
 namespace stillhand::device_rig::moteus {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/moteus_settings.hpp"
+#include "services/core/device_rig/moteus_settings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

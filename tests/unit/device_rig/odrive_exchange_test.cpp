@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-31: which answers are taken for an exchange, when lines are missing, damaged, late or in
 // another order.
-#include "services/device_rig/core/odrive_exchange.hpp"
+#include "services/core/device_rig/odrive_exchange.hpp"
 
 #include <gtest/gtest.h>
 

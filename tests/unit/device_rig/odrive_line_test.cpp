@@ -2,7 +2,7 @@
 // Eq. DR-30.  Judges: what the maker prints.  odriverobotics/ODrive at a5f4efe,
 // docs/ascii-protocol.md
 // ("r vbus_voltage *93"), and its issue 596 ("48.065918*33").
-#include "services/device_rig/core/odrive_line.hpp"
+#include "services/core/device_rig/odrive_line.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-32: the driver's language next to the emulator, which is written from the maker's document
 // and shares no code with it.
-#include "services/device_rig/core/odrive_protocol.hpp"
+#include "services/core/device_rig/odrive_protocol.hpp"
 
 #include <gtest/gtest.h>
 

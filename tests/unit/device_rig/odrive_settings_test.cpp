@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/odrive_settings.hpp"
+#include "services/core/device_rig/odrive_settings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/parts.hpp"
+#include "services/core/device_rig/parts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "services/device_rig/load_devices.hpp"
+#include "services/devices/device_rig/load_devices.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 

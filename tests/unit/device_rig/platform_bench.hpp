@@ -9,12 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include "services/device_rig/core/platform_exchange.hpp"
-#include "services/device_rig/plant_limits.hpp"
-#include "services/device_rig/platform_drive.hpp"
-#include "services/motion/core/motion_generator.hpp"
-#include "services/rig/core/platform.hpp"
-#include "services/runtime/process/platform_permission.hpp"
+#include "services/core/device_rig/platform_exchange.hpp"
+#include "services/core/motion/motion_generator.hpp"
+#include "services/core/rig/platform.hpp"
+#include "services/devices/device_rig/plant_limits.hpp"
+#include "services/devices/device_rig/platform_drive.hpp"
+#include "services/system/process/platform_permission.hpp"
 #include "tests/emulators/moog_emulator.hpp"
 #include "tests/emulators/platform_emulator.hpp"
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "services/device_rig/core/platform_response.hpp"
+#include "services/core/device_rig/platform_response.hpp"
 #include "tests/unit/device_rig/platform_bench.hpp"
 
 namespace stillhand::device_rig {

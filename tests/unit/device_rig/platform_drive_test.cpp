@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/platform_drive.hpp"
+#include "services/devices/device_rig/platform_drive.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/platform_exchange.hpp"
+#include "services/core/device_rig/platform_exchange.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The packets below were written out from the documents by a Python script of struct.pack() calls,
 // not by this code.
-#include "services/device_rig/core/platform_protocol.hpp"
+#include "services/core/device_rig/platform_protocol.hpp"
 
 #include <gtest/gtest.h>
 

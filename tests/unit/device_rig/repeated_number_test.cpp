@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-14.
-#include "services/device_rig/core/repeated_number.hpp"
+#include "services/core/device_rig/repeated_number.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/device_rig/core/reply_clock.hpp"
+#include "services/core/device_rig/reply_clock.hpp"
 
 #include <gtest/gtest.h>
 

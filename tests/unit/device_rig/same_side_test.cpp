@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DR-17.
-#include "services/device_rig/core/same_side.hpp"
+#include "services/core/device_rig/same_side.hpp"
 
 #include <gtest/gtest.h>
 

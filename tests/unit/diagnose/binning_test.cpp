@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "services/signal/random.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::diagnose {
 namespace {

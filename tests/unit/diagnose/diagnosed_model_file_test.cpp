@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/model_file.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/diagnosis/model_file.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

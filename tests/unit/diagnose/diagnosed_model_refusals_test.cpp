@@ -7,8 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/model_file.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/diagnosis/model_file.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::diagnosis {

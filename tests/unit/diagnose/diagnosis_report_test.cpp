@@ -17,7 +17,7 @@
 
 #include "apps/diagnose/page/effect_numbers.hpp"
 #include "apps/diagnose/page/evidence.hpp"
-#include "apps/report/plot/figure_table.hpp"
+#include "apps/libraries/report/plot/figure_table.hpp"
 #include "tests/unit/diagnose/sample_recordings.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 

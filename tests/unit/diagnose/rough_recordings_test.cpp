@@ -7,10 +7,10 @@
 #include <cmath>
 #include <functional>
 
-#include "apps/measurement/grid.hpp"
-#include "services/diagnosis/core/diagnose.hpp"
-#include "services/recording/core/csv.hpp"
-#include "services/signal/random.hpp"
+#include "apps/libraries/measurement/grid.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/recording/csv.hpp"
+#include "services/core/signal/random.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

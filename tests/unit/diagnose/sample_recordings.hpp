@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "services/diagnosis/core/diagnose.hpp"
-#include "services/diagnosis/core/effect_sizes.hpp"
-#include "services/diagnosis/core/measurement.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
-#include "services/signal/butterworth.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/diagnosis/effect_sizes.hpp"
+#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/signal/butterworth.hpp"
+#include "services/core/signal/random.hpp"
 
 /// Recordings whose truth is known.
 namespace stillhand::diagnose::test {

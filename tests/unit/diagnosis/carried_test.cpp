@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of a found model predicts another recording, Eq. DG-58 and DG-59.
-#include "services/diagnosis/core/carried.hpp"
+#include "services/core/diagnosis/carried.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/diagnosis/core/apart_from_time.hpp"
+#include "services/core/diagnosis/apart_from_time.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

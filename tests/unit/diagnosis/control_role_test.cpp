@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a canceller does about each kind, and what the kinds' terms are measured in.
-#include "services/diagnosis/core/model/control_role.hpp"
+#include "services/core/diagnosis/model/control_role.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

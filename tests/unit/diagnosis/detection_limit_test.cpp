@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/detection/detection_limit.hpp"
+#include "services/core/diagnosis/detection/detection_limit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/diagnosis/core/diagnose.hpp"
-#include "services/diagnosis/core/selection.hpp"
-#include "services/statistics/signed_rank.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/diagnosis/selection.hpp"
+#include "services/core/statistics/signed_rank.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

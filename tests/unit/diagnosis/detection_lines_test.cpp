@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/detection/detection_lines.hpp"
+#include "services/core/diagnosis/detection/detection_lines.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/detection/detection.hpp"
+#include "services/core/diagnosis/detection/detection.hpp"
 
 #include <gtest/gtest.h>
 

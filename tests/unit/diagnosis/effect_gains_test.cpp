@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

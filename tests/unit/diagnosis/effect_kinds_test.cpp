@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

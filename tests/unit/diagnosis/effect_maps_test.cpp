@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "services/diagnosis/core/model/loop.hpp"
-#include "services/diagnosis/effects/parts.hpp"
+#include "services/core/diagnosis/effects/parts.hpp"
+#include "services/core/diagnosis/model/loop.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Physical numbers by their closed forms.
-#include "services/diagnosis/core/effect_sizes.hpp"
+#include "services/core/diagnosis/effect_sizes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

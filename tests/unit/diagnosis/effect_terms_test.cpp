@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "services/contract/units.hpp"
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

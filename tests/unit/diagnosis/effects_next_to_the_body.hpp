@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "services/diagnosis/core/model/effect.hpp"
+#include "services/core/diagnosis/model/effect.hpp"
 
 namespace stillhand::diagnosis::made {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/units.hpp"
+#include "services/core/contract/units.hpp"
 #include "tests/unit/diagnosis/proposed.hpp"
 
 // Effects of time alone.  Each on a recording of its own.

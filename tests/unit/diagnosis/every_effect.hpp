@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "services/diagnosis/core/model/effect.hpp"
+#include "services/core/diagnosis/model/effect.hpp"
 #include "tests/unit/diagnosis/effects_next_to_the_body.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 

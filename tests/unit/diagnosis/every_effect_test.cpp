@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/core/diagnosis/fitting/fit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/core/fitting/held_out.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/diagnosis/fitting/held_out.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

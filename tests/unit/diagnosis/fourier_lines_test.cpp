@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/detection/fourier_lines.hpp"
+#include "services/core/diagnosis/detection/fourier_lines.hpp"
 
 #include <gtest/gtest.h>
 

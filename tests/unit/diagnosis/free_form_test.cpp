@@ -8,7 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

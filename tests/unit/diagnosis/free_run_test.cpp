@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 // The free run against difference equations that are written out here, stage by stage of the model
-// (services/diagnosis/RESULTS.md); two stretches, so that nothing leaks from one into the other.
+// (services/core/diagnosis/RESULTS.md); two stretches, so that nothing leaks from one into the
+// other.
 namespace stillhand::diagnosis {
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/fitting/impulse_response.hpp"
+#include "services/core/diagnosis/fitting/impulse_response.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/model/interpolation.hpp"
+#include "services/core/diagnosis/model/interpolation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/fitting/line_search.hpp"
+#include "services/core/diagnosis/fitting/line_search.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 // linearised() against central differences of free_run(), with every kind of stage in the model.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies with a nonlinearity that run side by side.
-#include "services/diagnosis/core/model/loop.hpp"
+#include "services/core/diagnosis/model/loop.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/diagnosis/core/model/model_run.hpp"
+#include "services/core/diagnosis/model/model_run.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "services/diagnosis/core/fitting/screening.hpp"
-#include "services/diagnosis/core/measurement.hpp"
-#include "services/diagnosis/core/model/model.hpp"
-#include "services/signal/butterworth.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/diagnosis/fitting/screening.hpp"
+#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/model/model.hpp"
+#include "services/core/signal/butterworth.hpp"
+#include "services/core/signal/random.hpp"
 
 /// Measurements whose making is known to the last number: difference equations written out, seeded
 /// noise.  Nothing here uses the engine's own simulation.

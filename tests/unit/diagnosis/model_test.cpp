@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/model/model.hpp"
+#include "services/core/diagnosis/model/model.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <limits>
 #include <numbers>
 
-#include "services/signal/difference_model.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/signal/difference_model.hpp"
+#include "services/core/signal/random.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::diagnosis {

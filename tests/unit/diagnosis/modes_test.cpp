@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/fitting/modes.hpp"
+#include "services/core/diagnosis/fitting/modes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/no_model.hpp"
+#include "services/core/diagnosis/no_model.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/diagnosis/core/alignment.hpp"
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/alignment.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 #include "tests/support/spoiled_recordings.hpp"
 
 namespace stillhand::diagnosis {

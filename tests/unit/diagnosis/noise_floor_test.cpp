@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/detection/noise_floor.hpp"
+#include "services/core/diagnosis/detection/noise_floor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

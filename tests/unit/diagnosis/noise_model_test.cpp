@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/fitting/noise_model.hpp"
+#include "services/core/diagnosis/fitting/noise_model.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/diagnosis/core/diagnose.hpp"
+#include "services/core/diagnosis/diagnose.hpp"
 #include "tests/planted/recording.hpp"
 #include "tests/planted/to_measurement.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"

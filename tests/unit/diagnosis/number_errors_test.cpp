@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Standard errors against what repeated experiments scatter, and what no record determines.
-#include "services/diagnosis/core/fitting/number_errors.hpp"
+#include "services/core/diagnosis/fitting/number_errors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/core/diagnosis/fitting/fit.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::diagnosis {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/detection/partial_coherence.hpp"
+#include "services/core/diagnosis/detection/partial_coherence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/detection/periodic_excitation.hpp"
+#include "services/core/diagnosis/detection/periodic_excitation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <string>
 
-#include "services/diagnosis/core/effect_sizes.hpp"
-#include "services/diagnosis/core/fitting/baseline.hpp"
-#include "services/diagnosis/core/fitting/fit.hpp"
-#include "services/diagnosis/core/fitting/screening.hpp"
+#include "services/core/diagnosis/effect_sizes.hpp"
+#include "services/core/diagnosis/fitting/baseline.hpp"
+#include "services/core/diagnosis/fitting/fit.hpp"
+#include "services/core/diagnosis/fitting/screening.hpp"
 #include "tests/planted/recording.hpp"
 #include "tests/planted/to_measurement.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"

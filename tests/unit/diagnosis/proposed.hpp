@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 /// What a kind of effect is asked for: a measurement with one of its own planted in it.

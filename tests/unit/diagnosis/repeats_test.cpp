@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/detection/repeats.hpp"
+#include "services/core/diagnosis/detection/repeats.hpp"
 
 #include <gtest/gtest.h>
 

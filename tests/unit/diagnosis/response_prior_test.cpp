@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is assumed of the body where the input excites nothing, Eq. DG-67.
-#include "services/diagnosis/core/fitting/response_prior.hpp"
+#include "services/core/diagnosis/fitting/response_prior.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "services/diagnosis/core/fitting/fit.hpp"
-#include "services/signal/difference_model.hpp"
+#include "services/core/diagnosis/fitting/fit.hpp"
+#include "services/core/signal/difference_model.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

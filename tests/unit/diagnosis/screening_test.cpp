@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/fitting/screening.hpp"
+#include "services/core/diagnosis/fitting/screening.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An effect is held a quarter of its range beyond where it was seen, Eq. DG-56.
-#include "services/diagnosis/core/model/seen_range.hpp"
+#include "services/core/diagnosis/model/seen_range.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The choice among models that were tried, Eq. DG-17 and DG-50, on errors that are made up.
-#include "services/diagnosis/core/selection.hpp"
+#include "services/core/diagnosis/selection.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much of an effect another recording will show, Eq. DG-68 and DG-69.
-#include "services/diagnosis/core/share.hpp"
+#include "services/core/diagnosis/share.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

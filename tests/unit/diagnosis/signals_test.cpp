@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/diagnosis/core/signals.hpp"
+#include "services/core/diagnosis/signals.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is proved of a model, and what is refused, Eq. DG-57.
-#include "services/diagnosis/core/model/stability.hpp"
+#include "services/core/diagnosis/model/stability.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "services/diagnosis/core/model/seen_range.hpp"
+#include "services/core/diagnosis/model/seen_range.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

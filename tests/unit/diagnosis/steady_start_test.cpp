@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every path with a memory starts where its first second would have brought it, Eq. DG-54.
-#include "services/diagnosis/core/model/steady_start.hpp"
+#include "services/core/diagnosis/model/steady_start.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

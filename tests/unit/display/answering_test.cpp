@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/display/core/answering.hpp"
+#include "services/core/display/answering.hpp"
 
 #include <gtest/gtest.h>
 

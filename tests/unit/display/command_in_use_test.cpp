@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cursor follows what a mitigation leaves of the stick's angle, and the raw stick without one.
-#include "services/display/core/command_in_use.hpp"
+#include "services/core/display/command_in_use.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "services/display/core/tracking_display.hpp"
+#include "services/core/display/tracking_display.hpp"
 
 namespace stillhand::display {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device is a named pipe: this tests the events, not a driver.
-#include "services/display/gamepad.hpp"
+#include "services/processes/display/gamepad.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include <cstring>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/folder.hpp"
 
 namespace stillhand::display {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/display/core/page_layout.hpp"
+#include "services/core/display/page_layout.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

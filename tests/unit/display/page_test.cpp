@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/display/core/page.hpp"
+#include "services/core/display/page.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/display/core/projection.hpp"
+#include "services/core/display/projection.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::display {
 namespace {

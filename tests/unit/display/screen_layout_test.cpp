@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/display/core/screen_layout.hpp"
+#include "services/core/display/screen_layout.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::display {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/display/view_output.hpp"
+#include "services/processes/display/view_output.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "services/contract/config_error.hpp"
-#include "services/display/view_opencv.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/processes/display/view_opencv.hpp"
 #include "tests/support/folder.hpp"
 
 namespace stillhand::display {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Properties of the orders for every number of conditions that an experiment can have, and more.
-#include "apps/experiment/core/counterbalance.hpp"
+#include "apps/libraries/experiment/core/counterbalance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/experiment/file/experiment_file.hpp"
+#include "apps/libraries/experiment/file/experiment_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include "apps/experiment/export/bids_texts.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::experiment {

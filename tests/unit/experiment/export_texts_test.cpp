@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "apps/experiment/export/bids_texts.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::experiment {
 namespace {

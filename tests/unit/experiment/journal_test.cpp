@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Real files in a folder of the test's own.
-#include "apps/experiment/file/journal.hpp"
+#include "apps/libraries/experiment/file/journal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // A journal is cut after every line and after every byte of its last line: what remains of the
 // protocol is what the whole lines left undone.
-#include "apps/experiment/core/progress.hpp"
+#include "apps/libraries/experiment/core/progress.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "apps/experiment/file/journal.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
+#include "apps/libraries/experiment/file/journal.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 

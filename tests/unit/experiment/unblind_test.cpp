@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "apps/experiment/file/standing.hpp"
 #include "apps/experiment/status.hpp"
-#include "services/recording/file_io.hpp"
+#include "apps/libraries/experiment/file/standing.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 

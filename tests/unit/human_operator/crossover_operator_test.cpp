@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/human_operator/core/crossover_operator.hpp"
+#include "services/core/human_operator/crossover_operator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/random.hpp"
 #include "tests/unit/human_operator/tracking_loop.hpp"
 
 namespace stillhand::human_operator {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/human_operator/core/fast_error.hpp"
+#include "services/core/human_operator/fast_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/human_operator/core/pointer_operator.hpp"
+#include "services/core/human_operator/pointer_operator.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "services/contract/config_error.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/random.hpp"
 #include "tests/unit/human_operator/tracking_loop.hpp"
 
 namespace stillhand::human_operator {

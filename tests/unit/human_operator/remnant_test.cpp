@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/human_operator/core/remnant.hpp"
+#include "services/core/human_operator/remnant.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "services/contract/tick.hpp"
-#include "services/human_operator/core/crossover_operator.hpp"
-#include "services/signal/reference.hpp"
-#include "services/signal/spectrum.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/human_operator/crossover_operator.hpp"
+#include "services/core/signal/reference.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::human_operator {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/arx.hpp"
+#include "services/core/identification/arx.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/golden/arx/exact_fit.hpp"
 #include "tests/support/feedthrough_records.hpp"
 #include "tests/support/refusal.hpp"

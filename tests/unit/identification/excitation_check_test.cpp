@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/excitation_check.hpp"
+#include "services/core/identification/excitation_check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/frequency_response.hpp"
+#include "services/core/identification/frequency_response.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/identifier.hpp"
+#include "services/core/identification/identifier.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 
-#include "services/contract/config_error.hpp"
-#include "services/rig/core/body.hpp"
-#include "services/rig/core/body_response.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/rig/body.hpp"
+#include "services/core/rig/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {

@@ -8,10 +8,10 @@
 #include <numbers>
 #include <random>
 
-#include "services/contract/tick.hpp"
-#include "services/identification/core/identifier.hpp"
-#include "services/signal/difference_model.hpp"
-#include "services/signal/second_order_lag.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/identification/identifier.hpp"
+#include "services/core/signal/difference_model.hpp"
+#include "services/core/signal/second_order_lag.hpp"
 
 namespace stillhand::identification {
 namespace {

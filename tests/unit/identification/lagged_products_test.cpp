@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/lagged_products.hpp"
+#include "services/core/identification/lagged_products.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/model_file.hpp"
+#include "services/files/identification/model_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/feedthrough_records.hpp"
 #include "tests/support/refusal.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/output_error.hpp"
+#include "services/core/identification/output_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/contract/config_error.hpp"
-#include "services/identification/core/arx.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/identification/arx.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/paper_preprocessing.hpp"
+#include "services/core/identification/paper_preprocessing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/pegged_record.hpp"
+#include "services/core/identification/pegged_record.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/rate_conversion.hpp"
+#include "services/core/identification/rate_conversion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/rig/core/body_response.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/rig/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {

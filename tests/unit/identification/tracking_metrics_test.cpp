@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/identification/core/tracking_metrics.hpp"
+#include "services/core/identification/tracking_metrics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
-#include "services/signal/random.hpp"
-#include "services/signal/spectrum.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/signal/random.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::identification {
 namespace {

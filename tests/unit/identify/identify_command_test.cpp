@@ -8,8 +8,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "services/identification/model_file.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/files/identification/model_file.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/support/feedthrough_records.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/verb.hpp"

@@ -8,11 +8,11 @@
 #include <complex>
 #include <numbers>
 
-#include "apps/measurement/grid.hpp"
-#include "apps/measurement/sample_screen.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/rig/core/body.hpp"
-#include "services/rig/core/body_response.hpp"
+#include "apps/libraries/measurement/grid.hpp"
+#include "apps/libraries/measurement/sample_screen.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/rig/body.hpp"
+#include "services/core/rig/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/spoiled_recordings.hpp"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "services/admittance/core/arm_fit.hpp"
+#include "services/core/admittance/arm_fit.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::lab {

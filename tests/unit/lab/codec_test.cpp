@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/cancellation/codec.hpp"
+#include "services/messages/cancellation/codec.hpp"
 
 namespace stillhand::lab {
 namespace {

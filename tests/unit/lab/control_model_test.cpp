@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "services/cancellation/control_model_file.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "services/runtime/process/domain.hpp"
+#include "services/system/process/domain.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/refusal.hpp"
 

@@ -8,14 +8,14 @@
 #include <iostream>
 
 #include "apps/lab/codec.hpp"
-#include "apps/session/loop.hpp"
+#include "apps/libraries/session/loop.hpp"
 #include "apps/study/mitigations/mitigated_trial.hpp"
-#include "services/cancellation/codec.hpp"
-#include "services/cancellation/parts/recipe.hpp"
-#include "services/display/codec.hpp"
-#include "services/human_operator/core/crossover_operator.hpp"
-#include "services/motion/core/motion_generator.hpp"
-#include "services/population/task.hpp"
+#include "services/core/cancellation/parts/recipe.hpp"
+#include "services/core/human_operator/crossover_operator.hpp"
+#include "services/core/motion/motion_generator.hpp"
+#include "services/core/population/task.hpp"
+#include "services/messages/cancellation/codec.hpp"
+#include "services/messages/display/codec.hpp"
 
 namespace stillhand::lab {
 namespace {

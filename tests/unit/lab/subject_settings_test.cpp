@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/human_operator/core/subject_config.hpp"
-#include "services/population/population.hpp"
-#include "services/recording/file_io.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/settings/describe.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/human_operator/subject_config.hpp"
+#include "services/core/population/population.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/files/settings/describe.hpp"
+#include "services/files/settings/load.hpp"
 #include "tests/support/folder.hpp"
 
 namespace stillhand::lab {

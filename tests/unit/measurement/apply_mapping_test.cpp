@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/tables/apply_mapping.hpp"
+#include "apps/libraries/measurement/tables/apply_mapping.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/measurement/tables/text_table.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/measurement/tables/text_table.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::measurement {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/tables/ask.hpp"
+#include "apps/libraries/measurement/tables/ask.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "apps/measurement/tables/text_table.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/measurement/tables/text_table.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::measurement {
 namespace {

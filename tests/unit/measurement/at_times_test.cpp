@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/tables/at_times.hpp"
+#include "apps/libraries/measurement/tables/at_times.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/tables/bag_table.hpp"
+#include "apps/libraries/measurement/tables/bag_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "apps/measurement/read.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/file_io.hpp"
+#include "apps/libraries/measurement/read.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/support/cdr_bytes.hpp"
 
 namespace stillhand::measurement {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/bridge.hpp"
+#include "apps/libraries/measurement/bridge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/signal/random.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::measurement {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/grid.hpp"
+#include "apps/libraries/measurement/grid.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <functional>
 
-#include "services/contract/config_error.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::measurement {
 namespace {

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/measurement/read.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/measurement/read.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::measurement {
 namespace {

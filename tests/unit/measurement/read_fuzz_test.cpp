@@ -6,8 +6,8 @@
 #include <fstream>
 #include <random>
 
-#include "apps/measurement/read.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/measurement/read.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/session_file.hpp"
 
 // Valid files, spoilt by a seeded generator: each is read into a measurement that check() accepts,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/row_clock.hpp"
+#include "apps/libraries/measurement/row_clock.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/contract/config_error.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::measurement {
 namespace {

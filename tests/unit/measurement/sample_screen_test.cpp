@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/sample_screen.hpp"
+#include "apps/libraries/measurement/sample_screen.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

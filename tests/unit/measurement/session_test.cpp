@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/session.hpp"
+#include "apps/libraries/measurement/session.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <fstream>
 #include <limits>
 
-#include "apps/measurement/read.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/contract/flag.hpp"
+#include "apps/libraries/measurement/read.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/flag.hpp"
 #include "tests/support/recorded_file.hpp"
 #include "tests/support/session_file.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/tables/text_cells.hpp"
+#include "apps/libraries/measurement/tables/text_cells.hpp"
 
 #include <gtest/gtest.h>
 

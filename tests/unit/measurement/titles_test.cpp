@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/tables/titles.hpp"
+#include "apps/libraries/measurement/tables/titles.hpp"
 
 #include <gtest/gtest.h>
 

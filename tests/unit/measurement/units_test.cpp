@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/measurement/tables/units.hpp"
+#include "apps/libraries/measurement/tables/units.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Low-pass and notch on the command: Eq. MI-1.
-#include "services/cancellation/parts/command_shaping.hpp"
+#include "services/core/cancellation/parts/command_shaping.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parts together: Eq. MI-6.  The force is bounded and fails to zero; a known plant is cancelled.
-#include "services/cancellation/parts/countermeasure.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <random>
 #include <string>
 
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::cancellation {
 namespace {

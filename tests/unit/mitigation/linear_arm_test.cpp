@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A fitted arm in the time domain: Eq. MI-4.
-#include "services/cancellation/parts/linear_arm.hpp"
+#include "services/core/cancellation/parts/linear_arm.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 #include <numbers>
 
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::cancellation {
 namespace {

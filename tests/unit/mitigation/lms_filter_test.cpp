@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normalised LMS with the acceleration as reference: Eq. MI-3.
-#include "services/cancellation/parts/lms_filter.hpp"
+#include "services/core/cancellation/parts/lms_filter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include "services/contract/config_error.hpp"
-#include "services/signal/second_order_lag.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/second_order_lag.hpp"
 
 namespace stillhand::cancellation {
 namespace {

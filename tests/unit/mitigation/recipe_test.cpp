@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a trial's assignment carries becomes a mitigation, or is refused before the trial begins.
-#include "services/cancellation/parts/recipe.hpp"
+#include "services/core/cancellation/parts/recipe.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <numbers>
 #include <string>
 
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/cancellation/parts/countermeasure.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::cancellation {

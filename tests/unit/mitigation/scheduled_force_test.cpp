@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The force of an arm between two known ones: Eq. MI-5.
-#include "services/cancellation/parts/scheduled_force.hpp"
+#include "services/core/cancellation/parts/scheduled_force.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::cancellation {
 namespace {

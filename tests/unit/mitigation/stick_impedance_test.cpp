@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The motor as spring, damper and mass: Eq. MI-2.
-#include "services/cancellation/parts/stick_impedance.hpp"
+#include "services/core/cancellation/parts/stick_impedance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/motion/core/excitation.hpp"
+#include "services/core/motion/excitation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
-#include "services/motion/core/peak_limit.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/motion/peak_limit.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::motion {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/motion/core/harmonic_motion.hpp"
+#include "services/core/motion/harmonic_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "services/signal/multisine.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/signal/multisine.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::motion {
 namespace {

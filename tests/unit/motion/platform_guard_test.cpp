@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/motion/core/platform_guard.hpp"
+#include "services/core/motion/platform_guard.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "services/contract/config_error.hpp"
-#include "services/motion/core/motion_trajectory.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/motion/motion_trajectory.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::motion {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/motion/ride_file.hpp"
+#include "services/messages/motion/ride_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::motion {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/motion/core/ride.hpp"
+#include "services/core/motion/ride.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/motion/core/motion_trajectory.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/motion/motion_trajectory.hpp"
 
 namespace stillhand::motion {
 namespace {

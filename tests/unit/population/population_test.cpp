@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Subjects of a population: Eq. SU-1 and SU-2.
-#include "services/population/population.hpp"
+#include "services/core/population/population.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <vector>
 
-#include "services/rig/core/rig.hpp"
-#include "services/settings/load.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/core/statistics/descriptive.hpp"
+#include "services/files/settings/load.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::population {

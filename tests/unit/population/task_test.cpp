@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/population/task.hpp"
+#include "services/core/population/task.hpp"
 
 #include <gmock/gmock.h>
 
-#include "services/contract/config_error.hpp"
-#include "services/rig/core/body_response.hpp"
-#include "services/rig/core/rig.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/rig.hpp"
 
 namespace stillhand::population {
 namespace {

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/provenance.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/diagnosis/model_file.hpp"
-#include "services/recording/core/csv.hpp"
+#include "apps/libraries/report/provenance.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/csv.hpp"
+#include "services/files/diagnosis/model_file.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/verb.hpp"

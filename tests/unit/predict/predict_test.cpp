@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/diagnosis/model_file.hpp"
+#include "services/files/diagnosis/model_file.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 

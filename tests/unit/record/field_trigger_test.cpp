@@ -8,7 +8,7 @@
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/idl_text.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::record {
 namespace {

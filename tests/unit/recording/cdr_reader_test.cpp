@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/messages/cdr_reader.hpp"
+#include "services/core/recording/messages/cdr_reader.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/mcap/compression.hpp"
+#include "services/core/recording/mcap/compression.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/mcap/crc32.hpp"
+#include "services/core/recording/mcap/crc32.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/csv.hpp"
+#include "services/core/recording/csv.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/event_window.hpp"
+#include "services/core/recording/event_window.hpp"
 
 #include <gtest/gtest.h>
 

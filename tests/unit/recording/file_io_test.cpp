@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/file_io.hpp"
+#include "services/files/recording/file_io.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

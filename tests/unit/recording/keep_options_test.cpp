@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/keep_options.hpp"
+#include "services/bus/recording/keep_options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/loss_count.hpp"
+#include "services/core/recording/loss_count.hpp"
 
 #include <gtest/gtest.h>
 

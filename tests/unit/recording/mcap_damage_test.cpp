@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <random>
 
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording {

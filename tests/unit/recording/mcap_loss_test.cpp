@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/mcap/mcap_loss.hpp"
+#include "services/core/recording/mcap/mcap_loss.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "places.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording {
@@ -18,7 +18,7 @@ using tests::Bytes;
 
 // The worked example of FORMAT.md: lines "<offset>  <bytes>  # <meaning>" between ```hex fences.
 Bytes worked_example() {
-  std::ifstream file(STILLHAND_SOURCE "/services/recording/FORMAT.md");
+  std::ifstream file(STILLHAND_SOURCE "/services/core/recording/FORMAT.md");
   Bytes bytes;
   bool inside = false;
   for (std::string line; std::getline(file, line);) {

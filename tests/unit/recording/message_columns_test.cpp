@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/messages/message_columns.hpp"
+#include "services/core/recording/messages/message_columns.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/of_experiment.hpp"
+#include "services/bus/recording/of_experiment.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/messages/omgidl_tokens.hpp"
+#include "services/core/recording/messages/omgidl_tokens.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

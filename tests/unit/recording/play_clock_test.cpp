@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time is set by hand: no test here sleeps.
-#include "services/recording/core/play_clock.hpp"
+#include "services/core/recording/play_clock.hpp"
 
 #include <gtest/gtest.h>
 

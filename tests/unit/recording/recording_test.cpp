@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/recording.hpp"
+#include "services/core/recording/recording.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/messages/release_errors.hpp"
+#include "services/core/recording/messages/release_errors.hpp"
 
 #include <gtest/gtest.h>
 

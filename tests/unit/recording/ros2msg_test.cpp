@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/messages/ros2msg.hpp"
+#include "services/core/recording/messages/ros2msg.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/messages/message_columns.hpp"
-#include "services/recording/core/messages/schema_types.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/messages/message_columns.hpp"
+#include "services/core/recording/messages/schema_types.hpp"
 #include "tests/support/cdr_bytes.hpp"
 #include "tests/support/refusal.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/rotation.hpp"
+#include "services/core/recording/rotation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/messages/same_definition.hpp"
+#include "services/core/recording/messages/same_definition.hpp"
 
 #include <gtest/gtest.h>
 

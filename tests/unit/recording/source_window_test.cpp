@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/source_window.hpp"
+#include "services/core/recording/source_window.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
 
 namespace stillhand::recording {
 namespace {

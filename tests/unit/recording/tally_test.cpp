@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/tally.hpp"
+#include "services/bus/recording/tally.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/sample_clock.hpp"
-#include "services/recording/trial_log.hpp"
+#include "services/bus/recording/trial_log.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/recording/sample_clock.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/session_file.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Real files in a folder of the test's own.
-#include "services/recording/tape.hpp"
+#include "services/bus/recording/tape.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "services/contract/config_error.hpp"
-#include "services/recording/core/mcap/mcap_reader.hpp"
-#include "services/recording/qos_texts.hpp"
+#include "services/bus/recording/qos_texts.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_reader.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/wait.hpp"
 

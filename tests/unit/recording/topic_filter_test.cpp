@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/core/topic_filter.hpp"
+#include "services/core/recording/topic_filter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recording/within.hpp"
+#include "services/files/recording/within.hpp"
 
 #include <gtest/gtest.h>
 

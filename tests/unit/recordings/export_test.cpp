@@ -8,7 +8,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "services/recording/core/csv.hpp"
+#include "services/core/recording/csv.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
 namespace stillhand::recordings {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/recording/core/mcap/mcap_loss.hpp"
+#include "services/core/recording/mcap/mcap_loss.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
 namespace stillhand::recordings {

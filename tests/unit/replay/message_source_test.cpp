@@ -10,7 +10,7 @@
 #include <fstream>
 #include <random>
 
-#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
 #include "tests/support/folder.hpp"
 
 namespace stillhand::replay {

@@ -9,8 +9,8 @@
 
 #include <numeric>
 
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/runtime/process/clock.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/system/process/clock.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/wait.hpp"
 

@@ -7,9 +7,9 @@
 
 #include "idl/idl_text.hpp"
 #include "places.hpp"
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/core/mcap/memory_bytes.hpp"
-#include "services/recording/qos_texts.hpp"
+#include "services/bus/recording/qos_texts.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/core/recording/mcap/memory_bytes.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/refusal.hpp"
 

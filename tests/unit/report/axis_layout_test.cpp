@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/plot/axis_layout.hpp"
+#include "apps/libraries/report/plot/axis_layout.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/plot/panel_layout.hpp"
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/plot/panel_layout.hpp"
+#include "apps/libraries/report/text.hpp"
 
 namespace stillhand::report {
 namespace {

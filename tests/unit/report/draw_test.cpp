@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/plot/draw.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "apps/report/plot/gnuplot_script.hpp"
+#include "apps/libraries/report/plot/gnuplot_script.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/plot/figure_table.hpp"
+#include "apps/libraries/report/plot/figure_table.hpp"
 
 #include <gtest/gtest.h>
 

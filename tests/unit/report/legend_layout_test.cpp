@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/plot/legend_layout.hpp"
+#include "apps/libraries/report/plot/legend_layout.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/text.hpp"
 
 namespace stillhand::report {
 namespace {

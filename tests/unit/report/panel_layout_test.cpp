@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/plot/panel_layout.hpp"
+#include "apps/libraries/report/plot/panel_layout.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "apps/report/text.hpp"
+#include "apps/libraries/report/text.hpp"
 
 namespace stillhand::report {
 namespace {

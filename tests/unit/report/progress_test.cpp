@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/progress.hpp"
+#include "apps/libraries/report/progress.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

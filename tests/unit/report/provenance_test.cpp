@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a result came from: written, read back, in words.
-#include "apps/report/provenance.hpp"
+#include "apps/libraries/report/provenance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/report/command_line.hpp"
+#include "apps/libraries/report/command_line.hpp"
 
 namespace stillhand::report {
 namespace {

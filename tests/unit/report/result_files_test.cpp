@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/result_files.hpp"
+#include "apps/libraries/report/result_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

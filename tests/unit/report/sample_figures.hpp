@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/report/plot/figure.hpp"
-#include "apps/report/plot/palette.hpp"
+#include "apps/libraries/report/plot/figure.hpp"
+#include "apps/libraries/report/plot/palette.hpp"
 #include "tests/support/folder.hpp"
 
 /// Figures with known content, and judges of what was drawn.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/staged_folder.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "services/contract/config_error.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
 namespace stillhand::report {

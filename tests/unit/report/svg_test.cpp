@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/report/plot/svg.hpp"
+#include "apps/libraries/report/plot/svg.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/rig/core/body.hpp"
+#include "services/core/rig/body.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "services/contract/units.hpp"
-#include "services/rig/core/body_response.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/rig/body_response.hpp"
 
 namespace stillhand::rig {
 namespace {

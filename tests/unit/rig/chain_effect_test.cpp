@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/rig/core/undeclared/chain_effect.hpp"
+#include "services/core/rig/undeclared/chain_effect.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "services/contract/units.hpp"
-#include "services/rig/core/body.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/rig/body.hpp"
 
 namespace stillhand::rig {
 namespace {

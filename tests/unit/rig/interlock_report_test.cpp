@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/rig/interlock_report.hpp"
+#include "services/processes/rig/interlock_report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What nerves and muscles add to the body: Eq. RG-27 to RG-32.
-#include "services/rig/core/neuromuscular.hpp"
+#include "services/core/rig/neuromuscular.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <complex>
 #include <vector>
 
-#include "services/contract/tick.hpp"
-#include "services/contract/units.hpp"
-#include "services/rig/core/rig.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/rig/rig.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Effects outside of the kinds: what is drawn, and that each acts as its equation says.
-#include "services/rig/core/undeclared/outside_draw.hpp"
+#include "services/core/rig/undeclared/outside_draw.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "services/contract/units.hpp"
-#include "services/rig/core/body.hpp"
-#include "services/rig/core/rig.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/rig/body.hpp"
+#include "services/core/rig/rig.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/rig/core/platform.hpp"
+#include "services/core/rig/platform.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "services/contract/units.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::rig {
 namespace {

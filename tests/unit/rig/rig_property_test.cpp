@@ -10,8 +10,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "services/rig/core/rig.hpp"
-#include "services/runtime/process/interlock.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/system/process/interlock.hpp"
 #include "tests/support/hostile.hpp"
 
 namespace stillhand::rig {
@@ -49,7 +49,7 @@ Trial trial_of(Hostile& draw, std::int64_t number, Tick tick) {
   if (draw.worst()) trial.start_tick = draw.tick(tick);
   if (draw.worst()) trial.duration_ticks = draw.tick(tick);
   if (draw.worst()) trial.phase = TrialPhase::kIdle;
-  // The shell drops a trial that is not sound (services/runtime/trial_codec.hpp).
+  // The shell drops a trial that is not sound (services/bus/trial_codec.hpp).
   return trial.sound() ? trial : Trial{};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/rig/core/rig.hpp"
+#include "services/core/rig/rig.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/rig/core/sensor_noise.hpp"
+#include "services/core/rig/sensor_noise.hpp"
 
 #include <gtest/gtest.h>
 

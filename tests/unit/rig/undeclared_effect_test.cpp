@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/rig/core/undeclared/undeclared_effect.hpp"
+#include "services/core/rig/undeclared/undeclared_effect.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "services/contract/units.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/rig/core/undeclared/effect_draw.hpp"
-#include "services/rig/core/undeclared/effect_sizing.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/core/rig/undeclared/effect_draw.hpp"
+#include "services/core/rig/undeclared/effect_sizing.hpp"
 
 namespace stillhand::rig {
 namespace {

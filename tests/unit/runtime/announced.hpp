@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/bus/announced.hpp"
-#include "services/runtime/bus/replay_mark.hpp"
+#include "services/bus/announced.hpp"
+#include "services/bus/replay_mark.hpp"
 
 namespace stillhand::runtime::announced {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/bus/batched/batched_udp.hpp"
+#include "services/bus/batched/batched_udp.hpp"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/process/cpu_share.hpp"
+#include "services/system/process/cpu_share.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/bus/discovered_qos.hpp"
+#include "services/bus/discovered_qos.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-#include "services/runtime/process/real_time.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::runtime {
 namespace {

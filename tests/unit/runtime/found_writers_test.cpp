@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/bus/found_writers.hpp"
+#include "services/bus/found_writers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

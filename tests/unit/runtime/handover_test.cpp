@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/process/handover.hpp"
+#include "services/system/process/handover.hpp"
 
 #include <gtest/gtest.h>
 

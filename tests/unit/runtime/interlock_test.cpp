@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/process/interlock.hpp"
+#include "services/system/process/interlock.hpp"
 
 #include <gtest/gtest.h>
 

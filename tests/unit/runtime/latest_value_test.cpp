@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/process/latest_value.hpp"
+#include "services/system/process/latest_value.hpp"
 
 #include <gtest/gtest.h>
 

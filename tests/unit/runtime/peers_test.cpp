@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who counts as alive decides whether the motor may push.
-#include "services/runtime/bus/peers.hpp"
+#include "services/bus/peers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/process/platform_permission.hpp"
+#include "services/system/process/platform_permission.hpp"
 
 #include <gtest/gtest.h>
 

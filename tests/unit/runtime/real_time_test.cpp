@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // In threads of their own, which alone change.  Where the system grants no real-time priority, the
 // calls report that and leave the thread as it was.
-#include "services/runtime/process/real_time.hpp"
+#include "services/system/process/real_time.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

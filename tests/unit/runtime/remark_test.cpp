@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/process/remark.hpp"
+#include "services/system/process/remark.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/bus/replay_mark.hpp"
+#include "services/bus/replay_mark.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/bus/batched/rtps_sample.hpp"
+#include "services/bus/batched/rtps_sample.hpp"
 
 #include <gtest/gtest.h>
 

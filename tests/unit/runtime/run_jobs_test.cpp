@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/process/run_jobs.hpp"
+#include "services/system/process/run_jobs.hpp"
 
 #include <gtest/gtest.h>
 

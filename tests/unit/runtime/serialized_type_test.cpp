@@ -12,8 +12,8 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "services/runtime/bus/bus.hpp"
-#include "services/runtime/bus/type_tag.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
 namespace {

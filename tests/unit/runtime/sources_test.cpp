@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which writer a process listens to decides who moves the motor.
-#include "services/runtime/bus/sources.hpp"
+#include "services/bus/sources.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/contract/config_error.hpp"
-#include "services/runtime/sources_codec.hpp"
+#include "services/bus/sources_codec.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/unit/runtime/announced.hpp"
 
 namespace stillhand::runtime {

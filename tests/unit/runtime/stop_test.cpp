@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each signal is sent to a process of its own, so that this one keeps its own signals.
-#include "services/runtime/process/stop.hpp"
+#include "services/system/process/stop.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

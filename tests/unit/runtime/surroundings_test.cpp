@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/bus/surroundings.hpp"
+#include "services/bus/surroundings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

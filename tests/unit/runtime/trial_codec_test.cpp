@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/trial_codec.hpp"
+#include "services/bus/trial_codec.hpp"
 
 #include <gtest/gtest.h>
 

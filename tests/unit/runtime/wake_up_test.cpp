@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/process/wake_up.hpp"
+#include "services/system/process/wake_up.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/sensing/core/conditioner.hpp"
+#include "services/core/sensing/conditioner.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "services/contract/units.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::sensing {
 namespace {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <vector>
 
-#include "services/contract/units.hpp"
-#include "services/rig/core/body_response.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/sensing/core/conditioner.hpp"
-#include "services/signal/butterworth.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/core/sensing/conditioner.hpp"
+#include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::sensing {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/session/clock_line.hpp"
+#include "apps/libraries/session/clock_line.hpp"
 
 #include <gtest/gtest.h>
 

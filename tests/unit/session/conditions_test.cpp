@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of conditions, and the trials that follow from it.
-#include "apps/session/core/conditions.hpp"
+#include "apps/libraries/session/core/conditions.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <set>
 
-#include "apps/session/protocol.hpp"
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/cancellation/parts/recipe.hpp"
-#include "services/contract/config_error.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/cancellation/parts/recipe.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::session {

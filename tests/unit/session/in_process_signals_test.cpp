@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/session/in_process.hpp"
+#include "apps/libraries/session/in_process.hpp"
 
 namespace stillhand::session {
 namespace {

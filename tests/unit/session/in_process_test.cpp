@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The closed loop in one process: the paper's three conditions, and that a seed is a whole session.
-#include "apps/session/in_process.hpp"
+#include "apps/libraries/session/in_process.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "services/signal/reference.hpp"
+#include "services/core/signal/reference.hpp"
 
 namespace stillhand::session {
 namespace {
@@ -104,10 +104,10 @@ TEST(InProcessLoopTest, TheMotorIsOffExceptInC) {
   EXPECT_GT(rms(session.signals.at(Condition::kC).motor_n), 1.0);
 }
 
-// What the model cannot know, services/rig/METHOD.md: the arm that tracks is stiffer than the idle
-// one that was identified, 25 % of the force; unmeasured motion 20 %, involuntary force 6 %, wander
-// up to 10 %; together 34 % in RMS.  The delay of two ticks and the motor's lag add less than 3 %.
-// More than 0.8 cancelled would mean that something knows too much.
+// What the model cannot know, services/core/rig/METHOD.md: the arm that tracks is stiffer than the
+// idle one that was identified, 25 % of the force; unmeasured motion 20 %, involuntary force 6 %,
+// wander up to 10 %; together 34 % in RMS.  The delay of two ticks and the motor's lag add less
+// than 3 %. More than 0.8 cancelled would mean that something knows too much.
 TEST(InProcessLoopTest, CancelsWhatTheIdleArmCanTellOfTheTrackingOne) {
   const TrialSignals signals = run_session(1).signals.at(Condition::kC);
   const double cancelled = cancelled_share(signals.feedthrough_n, signals.motor_n);

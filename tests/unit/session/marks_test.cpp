@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/session/marks.hpp"
+#include "apps/libraries/session/marks.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sessions whose stamps the test has written.
-#include "apps/session/misses.hpp"
+#include "apps/libraries/session/misses.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/tick.hpp"
+#include "services/core/contract/tick.hpp"
 
 namespace stillhand::session {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/session/protocol.hpp"
+#include "apps/libraries/session/protocol.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::session {

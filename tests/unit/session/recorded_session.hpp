@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/session/trial_outcome.hpp"
+#include "apps/libraries/session/trial_outcome.hpp"
 #include "idl/clock.h"
 #include "idl/model.h"
 #include "tests/support/session_file.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Results of a recording whose samples the test has written.
-#include "apps/session/results.hpp"
+#include "apps/libraries/session/results.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. SN-7 on a stick whose gain from acceleration to angle is known.
-#include "apps/session/sensed_share.hpp"
+#include "apps/libraries/session/sensed_share.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/session/session_recording.hpp"
+#include "apps/libraries/session/session_recording.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

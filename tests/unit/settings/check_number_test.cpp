@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/settings/check_number.hpp"
+#include "services/files/settings/check_number.hpp"
 
 #include <gmock/gmock.h>
 

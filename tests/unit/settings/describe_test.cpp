@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/settings/describe.hpp"
+#include "services/files/settings/describe.hpp"
 
 #include <gtest/gtest.h>
 

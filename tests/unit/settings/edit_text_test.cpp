@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/settings/edit_text.hpp"
+#include "services/files/settings/edit_text.hpp"
 
 #include <gtest/gtest.h>
 

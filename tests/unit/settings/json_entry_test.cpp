@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/settings/json_entry.hpp"
+#include "services/files/settings/json_entry.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

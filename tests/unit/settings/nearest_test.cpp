@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/settings/nearest.hpp"
+#include "services/files/settings/nearest.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/settings/check_name.hpp"
+#include "services/files/settings/check_name.hpp"
 
 namespace stillhand::settings {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parsed file itself, and that what a program prints of a Config it reads back.
-#include "services/settings/section.hpp"
+#include "services/files/settings/section.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@
 #include <random>
 #include <string>
 
-#include "services/contract/config_error.hpp"
-#include "services/settings/describe.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/describe.hpp"
+#include "services/files/settings/load.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::settings {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/settings/yaml_text.hpp"
+#include "services/files/settings/yaml_text.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/rig/core/rig.hpp"
-#include "services/settings/describe.hpp"
-#include "services/settings/load.hpp"
+#include "services/core/rig/rig.hpp"
+#include "services/files/settings/describe.hpp"
+#include "services/files/settings/load.hpp"
 
 namespace stillhand::settings {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/band_pass.hpp"
+#include "services/core/signal/band_pass.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/cycle_monitor.hpp"
+#include "services/core/signal/cycle_monitor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/delay_line.hpp"
+#include "services/core/signal/delay_line.hpp"
 
 #include <gtest/gtest.h>
 

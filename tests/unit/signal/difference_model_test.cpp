@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/difference_model.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/force_envelope.hpp"
+#include "services/core/signal/force_envelope.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "services/contract/config_error.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::signal {
 namespace {

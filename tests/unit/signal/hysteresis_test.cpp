@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Elements with memory, Eq. SG-19 and SG-20.
-#include "services/signal/hysteresis.hpp"
+#include "services/core/signal/hysteresis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "services/signal/random.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::signal {
 namespace {

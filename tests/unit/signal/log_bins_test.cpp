@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/log_bins.hpp"
+#include "services/core/signal/log_bins.hpp"
 
 #include <gtest/gtest.h>
 

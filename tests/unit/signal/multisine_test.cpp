@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/multisine.hpp"
+#include "services/core/signal/multisine.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::signal {

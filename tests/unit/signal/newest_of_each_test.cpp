@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/newest_of_each.hpp"
+#include "services/core/signal/newest_of_each.hpp"
 
 #include <gtest/gtest.h>
 

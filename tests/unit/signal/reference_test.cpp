@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/reference.hpp"
+#include "services/core/signal/reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "services/contract/config_error.hpp"
-#include "services/signal/spectrum.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::signal {
 namespace {

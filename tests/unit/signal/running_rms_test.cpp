@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/running_rms.hpp"
+#include "services/core/signal/running_rms.hpp"
 
 #include <gtest/gtest.h>
 

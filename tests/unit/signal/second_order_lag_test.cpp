@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/second_order_lag.hpp"
+#include "services/core/signal/second_order_lag.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/contract/tick.hpp"
+#include "services/core/contract/tick.hpp"
 
 namespace stillhand::signal {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/slow_way.hpp"
+#include "services/core/signal/slow_way.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/smooth_step.hpp"
+#include "services/core/signal/smooth_step.hpp"
 
 #include <gtest/gtest.h>
 

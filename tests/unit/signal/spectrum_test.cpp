@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/signal/spectrum.hpp"
+#include "services/core/signal/spectrum.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::signal {
 namespace {

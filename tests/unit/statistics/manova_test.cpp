@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/statistics/manova.hpp"
+#include "services/core/statistics/manova.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/statistics/multiple_testing.hpp"
+#include "services/core/statistics/multiple_testing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <iterator>
 
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/statistics_golden.hpp"
 
 namespace stillhand::statistics {

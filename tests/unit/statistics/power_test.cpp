@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/statistics/power.hpp"
+#include "services/core/statistics/power.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "services/contract/config_error.hpp"
-#include "services/signal/random.hpp"
-#include "services/statistics/t_test.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/signal/random.hpp"
+#include "services/core/statistics/t_test.hpp"
 #include "tests/support/statistics_golden.hpp"
 
 namespace stillhand::statistics {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fieller's interval of a ratio of means: Eq. ST-16.
-#include "services/statistics/ratio.hpp"
+#include "services/core/statistics/ratio.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
-#include "services/contract/config_error.hpp"
-#include "services/statistics/descriptive.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::statistics {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "apps/study/mitigations/campaign_output.hpp"
 #include "apps/study/mitigations/choices.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {

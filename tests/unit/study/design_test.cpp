@@ -8,8 +8,8 @@
 #include <complex>
 #include <numbers>
 
-#include "services/admittance/core/arm_fit.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/admittance/arm_fit.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -10,8 +10,8 @@
 #include <random>
 
 #include "apps/study/explain/inference.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/settings/describe.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/settings/describe.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "services/recording/core/mcap/mcap_writer.hpp"
-#include "services/recording/file_io.hpp"
+#include "services/core/recording/mcap/mcap_writer.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "apps/study/analysis.hpp"
 #include "apps/study/output.hpp"
-#include "services/signal/reference.hpp"
+#include "services/core/signal/reference.hpp"
 
 /// Results of subjects that no loop has run: every number is chosen by the test.
 namespace stillhand::study::made {

@@ -11,7 +11,7 @@
 #include "apps/study/recorded/diagnoses.hpp"
 #include "apps/study/recorded/simulated_people.hpp"
 #include "apps/study/report_sections.hpp"
-#include "services/statistics/t_test.hpp"
+#include "services/core/statistics/t_test.hpp"
 #include "tests/unit/study/made_record.hpp"
 
 namespace stillhand::study {

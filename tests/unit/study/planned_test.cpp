@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "services/statistics/power.hpp"
+#include "services/core/statistics/power.hpp"
 #include "tests/unit/study/made_record.hpp"
 
 namespace stillhand::study {

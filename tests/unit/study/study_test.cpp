@@ -11,7 +11,7 @@
 
 #include "apps/study/analysis.hpp"
 #include "apps/study/explain/paper_tables.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "apps/study/output.hpp"
 #include "apps/study/study.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/rig/sealed_file.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/rig/sealed_file.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::study {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/vehicle/driven_motion.hpp"
+#include "services/core/vehicle/driven_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "services/contract/units.hpp"
-#include "services/signal/random.hpp"
-#include "services/vehicle/vehicle_settings.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/signal/random.hpp"
+#include "services/core/vehicle/vehicle_settings.hpp"
 
 namespace stillhand::vehicle {
 namespace {

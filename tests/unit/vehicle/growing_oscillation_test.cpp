@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/vehicle/core/growing_oscillation.hpp"
+#include "services/core/vehicle/growing_oscillation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <cstdio>
 #include <limits>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
-#include "services/signal/random.hpp"
-#include "services/signal/second_order_lag.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/signal/random.hpp"
+#include "services/core/signal/second_order_lag.hpp"
 
 namespace stillhand::vehicle {
 namespace {

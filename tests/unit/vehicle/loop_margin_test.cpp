@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/vehicle/core/loop_margin.hpp"
+#include "services/core/vehicle/loop_margin.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/contract/units.hpp"
-#include "services/signal/delay_line.hpp"
-#include "services/signal/random.hpp"
-#include "services/signal/second_order_lag.hpp"
-#include "services/vehicle/core/vehicle.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/signal/delay_line.hpp"
+#include "services/core/signal/random.hpp"
+#include "services/core/signal/second_order_lag.hpp"
+#include "services/core/vehicle/vehicle.hpp"
 
 namespace stillhand::vehicle {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/vehicle/region_output.hpp"
-#include "services/contract/config_error.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::vehicle {
 namespace {

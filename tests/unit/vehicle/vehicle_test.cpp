@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/vehicle/core/vehicle.hpp"
+#include "services/core/vehicle/vehicle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <limits>
 #include <string>
 
-#include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
-#include "services/contract/units.hpp"
-#include "services/signal/random.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+#include "services/core/contract/units.hpp"
+#include "services/core/signal/random.hpp"
 
 namespace stillhand::vehicle {
 namespace {

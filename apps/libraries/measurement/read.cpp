@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/libraries/measurement/read.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "apps/libraries/measurement/grid.hpp"
+#include "apps/libraries/measurement/session.hpp"
+#include "apps/libraries/measurement/tables/apply_mapping.hpp"
+#include "apps/libraries/measurement/tables/bag_table.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
+#include "services/system/process/remark.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+// A hand moves at 0.1 to 10 Hz, which fewer rows a second don't show.
+constexpr double kLeastHandRate_hz = 5.0;
+
+// A table whose 't [ms]' holds seconds looks like a fast one that ends within a blink.  At 10 Hz,
+// the fastest that a hand moves, a second holds ten periods; fewer show no response.
+constexpr double kFast_hz = 5e3;
+constexpr double kBlink_s = 1.0;
+
+std::string hands_channel(const diagnosis::Measurement& measurement) {
+  for (const diagnosis::Channel& channel : measurement.channels) {
+    if (!si_unit(channel.name).empty()) return channel.name;
+  }
+  return {};
+}
+
+// A factor of the times that makes the rate one of a laboratory's sensors; 0: none of the usual.
+double likely_factor(double rate_hz) {
+  constexpr double kLeast_hz = 50.0;
+  constexpr double kMost_hz = 5000.0;
+  for (const double factor : {1e3, 1e-3, 86400.0, 1e6, 1e-6, 1e9, 1e-9}) {
+    if (rate_hz / factor >= kLeast_hz && rate_hz / factor <= kMost_hz) return factor;
+  }
+  return 0.0;
+}
+
+std::string other_unit(double rate_hz) {
+  const double factor = likely_factor(rate_hz);
+  if (rate_hz == 1.0) {
+    return "if the column counts rows: --sample-rate HZ and no column of times; if it holds "
+           "milliseconds: --map 'TITLE=t [ms]' and the other columns";
+  }
+  if (factor == 0.0) return "is the unit of the times the one that the title states?";
+  return fmt::format(
+      "if the times are in another unit, of {:.4g} Hz, although the title says "
+      "otherwise: --map 'TITLE={}' and the other columns",
+      rate_hz / factor, factor == 1e-3 ? std::string("t [ms]") : fmt::format("t * {:g}", factor));
+}
+
+void refuse_blink(const diagnosis::Measurement& measurement) {
+  const double length_s = static_cast<double>(measurement.size()) / measurement.rate_hz;
+  const std::string hand = hands_channel(measurement);
+  if (hand.empty() || measurement.rate_hz < kFast_hz || length_s >= kBlink_s) return;
+  throw ConfigError(
+      measurement.source + ", time",
+      fmt::format("{:.4g} Hz and {:.3g} s in all, of {}", measurement.rate_hz, length_s, hand),
+      fmt::format("at least {:g} s; {}", kBlink_s, other_unit(measurement.rate_hz)));
+}
+
+// A table whose 't [s]' holds milliseconds looks like one of a very slow sensor.  Slow sensors
+// exist, but none measures the motion or the force of a hand.
+void refuse_slow_hand(const diagnosis::Measurement& measurement) {
+  const std::string hand = hands_channel(measurement);
+  if (hand.empty() || measurement.rate_hz >= kLeastHandRate_hz) return;
+  throw ConfigError(measurement.source + ", time",
+                    fmt::format("{:.4g} s between rows of {}", 1.0 / measurement.rate_hz, hand),
+                    fmt::format("at most {:.4g} s; {}", 1.0 / kLeastHandRate_hz,
+                                other_unit(measurement.rate_hz)));
+}
+
+// Every recording comes this way.
+diagnosis::Measurement screened(recording::Recording rows, const ReadOptions& options,
+                                const std::vector<std::string>& notes,
+                                const std::vector<BackStep>& back_steps = {}) {
+  std::vector<diagnosis::SampleFault> faults = screen(rows, options.channels);
+  for (const BackStep& step : back_steps) {
+    faults.push_back({"t",
+                      "time_goes_back",
+                      {step.time_s},
+                      0.0,
+                      fmt::format("t: the stamps go back by {:.4g} s after {:.4g} s: a new stretch "
+                                  "begins there, and time goes on.",
+                                  step.back_s, step.time_s)});
+  }
+  diagnosis::Measurement out = on_grid(std::move(rows), options.most_values);
+  std::vector<std::string> before = notes;
+  for (const diagnosis::SampleFault& fault : faults) before.push_back(fault.says);
+  out.notes.insert(out.notes.begin(), before.begin(), before.end());
+  out.screening = std::move(faults);
+  return out;
+}
+
+diagnosis::Measurement read_session(const std::string& path, const ReadOptions& options) {
+  SessionRows session = options.session_trial.empty()
+                            ? read_session_rows(path, options.trial)
+                            : read_session_rows(path, options.session_trial, true);
+  if (!session.loss.empty()) runtime::remark(session.loss);
+  return screened(std::move(session.rows), options, session.notes);
+}
+
+// The mapping of a file; signs and sample rate that are options count before those of a file.
+Mapping mapping_for(const std::string& path, const ReadOptions& options) {
+  if (options.map_file.empty()) return options.mapping;
+  std::error_code error;
+  const bool there = std::filesystem::exists(options.map_file, error);
+  if (there && std::filesystem::equivalent(path, options.map_file, error)) {
+    throw ConfigError("--map-file", options.map_file + ", the recording itself",
+                      "a file of its own");
+  }
+  if (!there && !options.ask) {
+    throw ConfigError("--map-file", options.map_file + ", which is not there",
+                      "a mapping file, or a terminal on which it can be asked for");
+  }
+  if (!there) return options.mapping;
+  Mapping mapping = read_mapping(options.map_file);
+  if (options.mapping.rate_hz) mapping.rate_hz = options.mapping.rate_hz;
+  if (options.mapping.form.separator != 0) mapping.form.separator = options.mapping.form.separator;
+  if (options.mapping.form.decimal != 0) mapping.form.decimal = options.mapping.form.decimal;
+  return mapping;
+}
+
+// Asks for the mapping and writes it down, if the file is to be made.
+void ask_if_needed(TableFile& file, const ReadOptions& options, Mapping& mapping) {
+  if (options.map_file.empty() || std::filesystem::exists(options.map_file)) return;
+  const Mapping stated = mapping;
+  mapping = options.ask(file);
+  mapping.form = stated.form;
+  if (stated.rate_hz) mapping.rate_hz = stated.rate_hz;
+  const recording::Status status =
+      recording::write_file_atomically(options.map_file, mapping_yaml(mapping, file.head().path));
+  if (!status.ok()) throw ConfigError("--map-file", status.text, "a place that can be written");
+}
+
+diagnosis::Measurement read_table(const std::string& path, const ReadOptions& options) {
+  Mapping mapping = mapping_for(path, options);
+  std::unique_ptr<TableFile> file = open_table(path, mapping.form, options.most_values);
+  ask_if_needed(*file, options, mapping);
+  MappedRows mapped = apply_mapping(*file, mapping);
+  file.reset();  // a text is as large as its numbers
+  diagnosis::Measurement out =
+      screened(std::move(mapped.rows), options, mapped.notes, mapped.back_steps);
+  refuse_blink(out);
+  refuse_slow_hand(out);
+  return out;
+}
+
+}  // namespace
+
+diagnosis::Measurement read_measurement(const std::string& path, const ReadOptions& options) {
+  const bool mapped = !options.mapping.empty() || !options.map_file.empty();
+  if (kind_of(path) == FileKind::kMcap && !mapped && is_session(path))
+    return read_session(path, options);
+  if (!options.trial.empty()) {
+    throw ConfigError("--trial", options.trial + " with the table " + path,
+                      "no --trial, or the recording of a session (MCAP) without --map");
+  }
+  return read_table(path, options);
+}
+
+}  // namespace stillhand::measurement

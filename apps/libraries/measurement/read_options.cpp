@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/libraries/measurement/read_options.hpp"
+
+#include <unistd.h>
+
+#include <iostream>
+
+#include "apps/libraries/measurement/tables/ask.hpp"
+#include "services/files/settings/check_name.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+constexpr const char* kGroup = "Recordings of other programs";
+
+}  // namespace
+
+std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options) {
+  if (isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0) {
+    options.ask = [](TableFile& file) { return ask_mapping(file, std::cin, std::cerr); };
+  }
+  CLI::Option* map =
+      verb.add_option_function<std::vector<std::string>>(
+              "--map",
+              [&options](const std::vector<std::string>& words) {
+                for (const std::string& word : words) {
+                  options.mapping.columns.push_back(parse_wish(word));
+                }
+              },
+              "the channel of each column, as 'TITLE=NAME [UNIT]': 'time=t [ms]' 'acc=a_y [g]' "
+              "'force=f [N]'. The time is t. A gain may follow: 'ai0=f [V] * 22.5 [N/V]'. A column "
+              "without a title is '#2'. Units become SI units. Without --map, each title is 'name "
+              "[unit]', and the time is 't [s]'")
+          ->type_name("'TITLE=NAME [UNIT]'")
+          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+          ->group(kGroup);
+  CLI::Option* file =
+      verb.add_option(
+              "--map-file", options.map_file,
+              "YAML file with the mapping (map, rate_hz, separator, decimal). If it does not "
+              "exist, the verb asks for the mapping on the terminal and writes the file")
+          ->check(settings::check_name)
+          ->excludes(map)
+          ->group(kGroup);
+  CLI::Option* rate = verb.add_option_function<double>(
+                              "--sample-rate",
+                              [&options](double rate_hz) {
+                                options.mapping.rate_hz = check_rate_hz(rate_hz, "--sample-rate");
+                              },
+                              "sample rate [Hz] of a file without times")
+                          ->group(kGroup);
+  CLI::Option* separator = verb.add_option_function<std::string>(
+                                   "--separator",
+                                   [&options](const std::string& word) {
+                                     options.mapping.form.separator =
+                                         parse_separator(word, "--separator");
+                                   },
+                                   "column separator of a text file: comma, semicolon, tab or "
+                                   "blank [found from the content]")
+                               ->group(kGroup);
+  CLI::Option* decimal =
+      verb.add_option_function<std::string>(
+              "--decimal",
+              [&options](const std::string& word) {
+                options.mapping.form.decimal = parse_decimal(word, "--decimal");
+              },
+              "decimal sign of a text file: point or comma [found from the content]")
+          ->group(kGroup);
+  return {map, file, rate, separator, decimal};
+}
+
+}  // namespace stillhand::measurement

@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/libraries/measurement/sample_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace stillhand::measurement {
+namespace {
+
+constexpr double kNormal = 1.4826;  // standard deviation of a normal one over its median size
+// A hand moves at 0.1 to 10 Hz.  A pulse of it lasts half of a period at 25 Hz or longer, and it
+// does not rest for two periods of its fastest without a sign of it.
+constexpr double kShortestPulse_s = 0.02;
+constexpr double kShortestStuck_s = 0.2;
+constexpr std::size_t kClippedRows = 3;  // two can be equal by chance at the top of a swing
+
+double middle_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// Of up to 20,000 rows, evenly spread: a median's standard error is then below 1 %.
+template <typename Size>
+double middle_over_rows(std::size_t first, std::size_t end, const Size& size) {
+  constexpr std::size_t kMostRows = 20'000;
+  const std::size_t step = (end - first) / kMostRows + 1;
+  std::vector<double> sizes;
+  for (std::size_t i = first; i < end; i += step) sizes.push_back(size(i));
+  return middle_of(std::move(sizes));
+}
+
+// The end of a converter's or a counter's range: a power of two, or one less.
+bool is_rail(double value) {
+  const auto power = [](double size) {
+    return size >= 127.0 && std::exp2(std::round(std::log2(size))) == size;
+  };
+  return power(std::abs(value)) || power(std::abs(value) + 1.0);
+}
+
+// The lowest and the highest value, how often each comes, and the values next to them.
+struct Ends {
+  double low = 0.0, above_low = 0.0, below_high = 0.0, high = 0.0;
+  std::size_t lows = 0, highs = 0;
+};
+
+Ends ends_of(const std::vector<double>& values, const std::vector<char>& is_bad) {
+  Ends out;
+  bool first = true;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = values[i];
+    if (is_bad[i] != 0) continue;
+    if (first) {
+      out = {value, value, value, value, 0, 0};
+      first = false;
+    }
+    if (value < out.low) {
+      out.above_low = out.low;
+      out.low = value;
+      out.lows = 0;
+    } else if (value > out.low && (value < out.above_low || out.above_low == out.low)) {
+      out.above_low = value;
+    }
+    if (value > out.high) {
+      out.below_high = out.high;
+      out.high = value;
+      out.highs = 0;
+    } else if (value < out.high && (value > out.below_high || out.below_high == out.high)) {
+      out.below_high = value;
+    }
+    out.lows += value == out.low ? 1u : 0u;
+    out.highs += value == out.high ? 1u : 0u;
+  }
+  return out;
+}
+
+// Where x is at a row, by the cubic through the two rows before it and two that lie h rows after it
+// and one more.
+double over_gap(double second, double first, double over, double beyond, double h) {
+  // Lagrange at 0, nodes at -2, -1, h and h + 1.
+  return -second * h * (h + 1.0) / ((h + 2.0) * (h + 3.0)) + 2.0 * first * h / (h + 2.0) +
+         2.0 * over / (h + 2.0) - 2.0 * beyond * h / ((h + 3.0) * (h + 2.0));
+}
+
+// Some rows between the ends show already that neither end is farther than they lie apart.
+bool ends_are_near(const std::vector<double>& values) {
+  constexpr std::size_t kRows = 1000;
+  double low = values[0];
+  double high = values[0];
+  for (const double value : values) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  double inner_low = high;
+  double inner_high = low;
+  for (std::size_t i = 0; i < values.size(); i += values.size() / kRows + 1) {
+    if (values[i] > low) inner_low = std::min(inner_low, values[i]);
+    if (values[i] < high) inner_high = std::max(inner_high, values[i]);
+  }
+  const double inner = inner_high - inner_low;
+  return high - inner_high <= inner && inner_low - low <= inner;
+}
+
+// Of all rows but the places, the range of 99.5 %: a few spikes next to each other are no places.
+std::pair<double, double> range_without(const std::vector<double>& values,
+                                        const std::vector<Place>& places) {
+  constexpr std::size_t kTail = 400;  // a 400th of the rows at either end
+  std::vector<double> x;
+  auto place = places.begin();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    while (place != places.end() && place->end <= i) ++place;
+    if (place == places.end() || i < place->first) x.push_back(values[i]);
+  }
+  const auto tail = static_cast<std::ptrdiff_t>(x.size() / kTail);
+  std::ranges::nth_element(x, x.begin() + tail);
+  const double low = x[static_cast<std::size_t>(tail)];
+  std::ranges::nth_element(x, x.end() - 1 - tail);
+  return {low, *(x.end() - 1 - tail)};
+}
+
+}  // namespace
+
+double step_to(const std::vector<double>& values, std::size_t row) {
+  return std::abs(values[row] - values[row - 1]);
+}
+
+// Median size of the steps between unequal rows.
+double usual_step(const std::vector<double>& values, const std::vector<Place>& runs) {
+  return middle_over_rows(1, runs.size(),
+                          [&](std::size_t r) { return step_to(values, runs[r].first); });
+}
+
+double deviation_of(const std::vector<double>& values) {
+  double mean = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double from = values[i] - mean;
+    mean += from / static_cast<double>(i + 1);
+    squares += from * (values[i] - mean);
+  }
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+// A source that beats, as footfalls do, and no disturbance of a wire.
+bool beat(const std::vector<Place>& places) {
+  constexpr std::size_t kFewest = 5;
+  if (places.size() < kFewest) return false;
+  std::size_t least = places[1].first - places[0].first;
+  std::size_t most = least;
+  for (std::size_t i = 2; i < places.size(); ++i) {
+    least = std::min(least, places[i].first - places[i - 1].first);
+    most = std::max(most, places[i].first - places[i - 1].first);
+  }
+  return 2 * least >= most;
+}
+
+std::size_t BadRows::rows() const noexcept {
+  std::size_t sum = 0;
+  for (const Place& place : places) sum += place.rows();
+  return sum;
+}
+
+std::vector<Place> equal_runs(const std::vector<double>& values) {
+  std::size_t equal = 0;
+  std::size_t three = 0;
+  for (std::size_t i = 2; i < values.size(); ++i) {
+    const bool same = values[i] == values[i - 1];
+    equal += same ? 1u : 0u;
+    three += same && values[i - 1] == values[i - 2] ? 1u : 0u;
+  }
+  if (three == 0 && 4 * equal < values.size()) return {};
+  std::vector<Place> out;
+  std::size_t first = 0;
+  for (std::size_t i = 1; i <= values.size(); ++i) {
+    if (i < values.size() && values[i] == values[first]) continue;
+    out.push_back({first, i});
+    first = i;
+  }
+  return out;
+}
+
+bool has_many_levels(const std::vector<double>& values) {
+  constexpr std::size_t kFewLevels = 16;
+  std::vector<double> levels;
+  for (const double value : values) {
+    if (!levels.empty() && value == levels.back()) continue;
+    const auto at = std::ranges::find(levels, value);
+    if (at != levels.end()) {
+      std::iter_swap(at, levels.end() - 1);
+      continue;
+    }
+    levels.push_back(value);
+    if (levels.size() > kFewLevels) return true;
+  }
+  return false;
+}
+
+std::vector<BadRows> far_values(const std::vector<double>& values) {
+  // A file has one fill value and a rail at either end; a few more do no harm.
+  constexpr std::size_t kMostValues = 8;
+  std::vector<BadRows> out;
+  if (ends_are_near(values)) return out;
+  std::vector<char> is_bad(values.size(), 0);
+  while (out.size() < kMostValues) {
+    const Ends ends = ends_of(values, is_bad);
+    const double inner = ends.below_high - ends.above_low;
+    const std::size_t most = values.size() / 2;
+    const bool of_high =
+        ends.highs >= 2 && ends.highs <= most && ends.high - ends.below_high > std::max(inner, 0.0);
+    const bool of_low =
+        ends.lows >= 2 && ends.lows <= most && ends.above_low - ends.low > std::max(inner, 0.0);
+    if (!of_high && !of_low) break;
+    const double far = of_high ? ends.high : ends.low;
+    BadRows bad{is_rail(far) ? "rail" : "sentinel", {}, fmt::format("{:.9g}", far)};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] != far) continue;
+      is_bad[i] = 1;
+      if (bad.places.empty() || bad.places.back().end != i) bad.places.push_back({i, i});
+      bad.places.back().end = i + 1;
+    }
+    out.push_back(std::move(bad));
+  }
+  if (!out.empty()) {
+    std::vector<double> left;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (is_bad[i] == 0) left.push_back(values[i]);
+    }
+    if (!has_many_levels(left)) return {};
+  }
+  return out;
+}
+
+double above_neighbours(const std::vector<double>& x, std::size_t i) {
+  return x[i] - (4.0 * (x[i - 1] + x[i + 1]) - x[i - 2] - x[i + 2]) / 6.0;
+}
+
+double off_neighbours(const std::vector<double>& values, std::size_t row) {
+  return std::abs(above_neighbours(values, row));
+}
+
+double usual_off_neighbours(const std::vector<double>& values) {
+  return kNormal * middle_over_rows(2, values.size() - 2,
+                                    [&](std::size_t i) { return off_neighbours(values, i); });
+}
+
+std::vector<Place> jumps_out_and_back(const std::vector<double>& x, double usual, double rate_hz) {
+  constexpr double kLeast = 25.0;  // standard deviations; exp(-25) of Laplace's distribution
+  constexpr double kGoesOn = 8.0;  // likewise; the cubic's own error is below two of them
+  constexpr double kShakes = 0.1;  // of the jump: what was really hit moves on by more
+  const double least = kLeast * usual;
+  const auto most_rows =
+      std::min<std::size_t>(2, static_cast<std::size_t>(kShortestPulse_s * rate_hz * (1.0 + 1e-6)));
+  std::vector<Place> out;
+  if (!(usual > 0.0)) return out;
+  for (std::size_t i = 3; i + 4 < x.size(); ++i) {
+    if (step_to(x, i) < least) continue;
+    for (std::size_t rows = 1; rows <= most_rows; ++rows) {
+      const std::size_t end = i + rows;
+      const double line = 0.5 * (x[i - 1] + x[end]);
+      const auto [jump, other] = std::minmax({std::abs(x[i] - line), std::abs(x[end - 1] - line)});
+      if (jump < kShakes * other) continue;  // the second row alone
+      const auto h = static_cast<double>(rows + 1);
+      const double before = x[i - 1] - over_gap(x[i - 3], x[i - 2], x[end], x[end + 1], h);
+      const double after = x[end] - over_gap(x[end + 2], x[end + 1], x[i - 1], x[i - 2], h);
+      const double most = std::max(kGoesOn * usual, kShakes * jump);
+      if (jump < least || std::abs(before) > most || std::abs(after) > most) continue;
+      out.push_back({i, end});
+      i = end;
+      break;
+    }
+  }
+  return out;
+}
+
+std::optional<BadRows> spikes_in(const std::vector<double>& values, double rate_hz,
+                                 const std::function<bool(const Place&)>& quiet) {
+  constexpr std::size_t kMostShare = 20;  // a twentieth of the rows: more are a signal
+  std::vector<Place> places = jumps_out_and_back(values, usual_off_neighbours(values), rate_hz);
+  if (places.empty()) return {};
+  const auto [low, high] = range_without(values, places);
+  const double range = high - low;
+  std::erase_if(places, [&](const Place& place) {
+    const double line = 0.5 * (values[place.first - 1] + values[place.end]);
+    return std::abs(values[place.first] - line) <= range;
+  });
+  const auto of_one = static_cast<std::size_t>(std::ranges::count_if(places, quiet));
+  if (places.empty() || beat(places) || 4 * of_one <= 3 * places.size()) return {};
+  // Those next to each other are such too.
+  std::vector<Place> far;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool beyond = values[i] > high + range || values[i] < low - range;
+    if (beyond) far.push_back({i, i + 1});
+  }
+  places.insert(places.end(), far.begin(), far.end());
+  std::ranges::sort(places, {}, &Place::first);
+  BadRows bad{"spikes", {}, {}};
+  for (const Place& place : places) {
+    if (bad.places.empty() || place.first > bad.places.back().end) {
+      bad.places.push_back(place);
+    } else {
+      bad.places.back().end = std::max(bad.places.back().end, place.end);
+    }
+  }
+  if (bad.rows() * kMostShare > values.size()) return {};
+  return bad;
+}
+
+std::optional<BadRows> stuck_in(const std::vector<double>& values, const std::vector<Place>& runs,
+                                double rate_hz,
+                                const std::function<bool(const Place&)>& should_move) {
+  constexpr std::size_t kLeastRows = 10;
+  constexpr std::size_t kLongerThanOthers = 10;
+  constexpr double kJump = 4.0;     // of a usual step: 2.7 standard deviations of a slope
+  constexpr double kSlowing = 0.2;  // of a usual step: what comes to rest is slower than that
+  constexpr double kRough = 0.5;    // of the deviation: each row is a new value
+  constexpr std::size_t kRowsBefore = 5;
+  constexpr std::size_t kLong = 5;  // 1 s: ten periods of a hand's fastest
+  constexpr std::size_t kLeastMoving =
+      5;  // a fifth of the rows: what rests longer is known by that
+  const std::size_t shortest =
+      std::max(static_cast<std::size_t>(kShortestStuck_s * rate_hz), kLeastRows);
+  std::size_t longest = 0;
+  std::size_t natural = 1;  // rows of the longest of the others
+  std::size_t rows = 0;     // of the others
+  for (const Place& run : runs) {
+    longest = std::max(longest, run.rows());
+    if (run.rows() >= shortest) continue;
+    natural = std::max(natural, run.rows());
+    rows += run.rows();
+  }
+  const std::size_t least = std::max(shortest, kLongerThanOthers * natural);
+  if (longest < least || kLeastMoving * rows < values.size()) return {};
+  const double usual = usual_step(values, runs);
+  const bool rough = usual > kRough * deviation_of(values);
+  const auto [low, high] = std::ranges::minmax(values);
+  BadRows bad{"stuck", {}, {}};
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Place& run = runs[r];
+    const double value = values[run.first];
+    if (run.rows() < least || run.first <= kRowsBefore || value == low || value == high) continue;
+    const bool ends = run.end < values.size();
+    const bool jumps = step_to(values, run.first) >= kJump * usual ||
+                       (ends && step_to(values, run.end) >= kJump * usual);
+    const double slowing = middle_over_rows(run.first - kRowsBefore, run.first + 1,
+                                            [&](std::size_t i) { return step_to(values, i); });
+    const bool is_level = std::ranges::any_of(runs, [&](const Place& other) {
+      return other.first != run.first && other.rows() >= kClippedRows &&
+             values[other.first] == value;
+    });
+    const bool is_new = rough || !ends || run.rows() >= kLong * shortest;
+    if (slowing < kSlowing * usual || !(jumps || (is_new && !is_level))) continue;
+    if (should_move(run)) bad.places.push_back(run);
+  }
+  if (bad.places.empty()) return {};
+  bad.detail = fmt::format("{:.6g}", values[bad.places.front().first]);
+  return bad;
+}
+
+std::optional<BadRows> clipped_in(const std::vector<double>& values,
+                                  const std::vector<Place>& runs) {
+  constexpr std::size_t kFewestRuns = 3;
+  constexpr std::size_t kOtherLength = 3;  // the plateaus of a trapezoid are equal within a row
+  // A sine of few digits has 1.3 times as many samples at its top level as at the next.
+  constexpr std::ptrdiff_t kMoreThanNext = 4;
+  if (runs.empty()) return {};
+  const Ends ends = ends_of(values, std::vector<char>(values.size(), 0));
+  BadRows bad{"clipped", {}, {}};
+  for (const bool top : {false, true}) {
+    const double end = top ? ends.high : ends.low;
+    const double next = top ? ends.below_high : ends.above_low;
+    const auto count = static_cast<std::ptrdiff_t>(top ? ends.highs : ends.lows);
+    if (end == 0.0 || count < 2 * kMoreThanNext) continue;  // what has one sign only rests at 0
+    if (count < kMoreThanNext * std::ranges::count(values, next)) continue;
+    std::vector<Place> at_end;
+    std::size_t least = values.size();
+    std::size_t most = 0;
+    for (const Place& run : runs) {
+      if (values[run.first] != end || run.rows() < kClippedRows) continue;
+      at_end.push_back(run);
+      if (run.first == 0 || run.end == values.size()) continue;
+      least = std::min(least, run.rows());
+      most = std::max(most, run.rows());
+    }
+    if (at_end.size() < kFewestRuns || most < least + kOtherLength) continue;
+    bad.places.insert(bad.places.end(), at_end.begin(), at_end.end());
+    bad.detail += fmt::format("{}{:.6g}", bad.detail.empty() ? "" : " and ", end);
+  }
+  if (bad.places.empty()) return {};
+  std::ranges::sort(bad.places, {}, &Place::first);
+  return bad;
+}
+
+std::optional<BadRows> dropped_in(const std::vector<double>& values, double rate_hz) {
+  constexpr double kJump = 6.0;  // standard deviations of the bend at a row
+  constexpr std::size_t kFewest = 5;
+  const auto off_line = [&](std::size_t first, std::size_t end) {
+    return std::abs(values[first] - 0.5 * (values[first - 1] + values[end]));
+  };
+  const double least = kJump * kNormal * middle_over_rows(1, values.size() - 1, [&](std::size_t i) {
+                         return off_line(i, i + 1);
+                       });
+  if (!(least > 0.0)) return {};
+  const auto longest = static_cast<std::size_t>(kShortestStuck_s * rate_hz);
+  std::vector<Place> jumps;
+  BadRows bad{"drop-outs", {}, "0"};
+  for (std::size_t i = 0, end = 1; i < values.size(); i = end, ++end) {
+    if (values[i] != 0.0) continue;
+    while (end < values.size() && values[end] == 0.0) ++end;
+    bad.places.push_back({i, end});
+    const bool inside = i > 0 && end < values.size() && end - i <= longest;
+    if (inside && off_line(i, end) >= least) jumps.push_back({i, end});
+  }
+  // What comes to 0 slowly rests there, and a limit is no drop-out.
+  const auto [low, high] = std::ranges::minmax(values);
+  if (jumps.size() < kFewest || beat(jumps) || 2 * jumps.size() < bad.places.size() ||
+      !(low < 0.0 && high > 0.0)) {
+    return {};
+  }
+  return bad;
+}
+
+}  // namespace stillhand::measurement

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/libraries/measurement/tables/guess.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "apps/libraries/measurement/tables/choice.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+// A sign that a title is about this channel.
+struct Hint {
+  std::string_view word;  // beginning of a word of the title
+  std::string_view name;
+};
+// "axis": x, y or z follows, in the word or behind it.
+constexpr std::array<Hint, 36> kHints{{{"time", "t"},
+                                       {"zeit", "t"},
+                                       {"temps", "t"},
+                                       {"timestamp", "t"},
+                                       {"seconds", "t"},
+                                       {"clock", "t"},
+                                       {"uhrzeit", "t"},
+                                       {"sec", "t"},
+                                       {"t", "t"},
+                                       {"acc", "axis"},
+                                       {"beschl", "axis"},
+                                       {"linear_acceleration", "axis"},
+                                       {"ax", "a_x"},
+                                       {"ay", "a_y"},
+                                       {"az", "a_z"},
+                                       {"a_x", "a_x"},
+                                       {"a_y", "a_y"},
+                                       {"a_z", "a_z"},
+                                       {"force", "f"},
+                                       {"kraft", "f"},
+                                       {"wrench", "f"},
+                                       {"fy", "f"},
+                                       {"f", "f"},
+                                       {"motor", "f_motor"},
+                                       {"roll", "roll"},
+                                       {"angle", "theta"},
+                                       {"winkel", "theta"},
+                                       {"theta", "theta"},
+                                       {"omega", "omega"},
+                                       {"gyro", "omega"},
+                                       {"angular_velocity", "omega"},
+                                       {"target", "x_r"},
+                                       {"reference", "x_r"},
+                                       {"cursor", "x_p"},
+                                       {"x_r", "x_r"},
+                                       {"x_p", "x_p"}}};
+
+bool is_small_letter(char c) { return c >= 'a' && c <= 'z'; }
+
+// Place where a word of the title begins with the hint's word; short hints must be the whole word.
+std::size_t find_word(const std::string& title, std::string_view word) {
+  for (std::size_t at = title.find(word); at != std::string::npos; at = title.find(word, at + 1)) {
+    const bool begins = at == 0 || !is_small_letter(title[at - 1]);
+    const std::size_t end = at + word.size();
+    const bool ends = end == title.size() || !(is_small_letter(title[end]) || title[end] == '_');
+    if (begins && (word.size() > 2 || ends)) return at;
+  }
+  return std::string::npos;
+}
+
+// The axis in the rest of a title: its last x, y or z that stands alone or ends a word; y, the
+// lateral one, where it states none.
+char axis_in(const std::string& rest) {
+  for (std::size_t i = rest.size(); i-- > 0;) {
+    const bool ends = i + 1 == rest.size() || !is_small_letter(rest[i + 1]);
+    if (ends && rest[i] >= 'x' && rest[i] <= 'z') return rest[i];
+  }
+  return 'y';
+}
+
+// The column's unit where it has one that fits, or the title ends with one ("acc_g", "angle deg");
+// else the channel's own, for a person to correct.
+std::string unit_for(const ColumnHead& column, const std::string& name) {
+  const std::string wanted = si_unit(name);
+  const std::size_t end = column.name.find_last_of("_ ");
+  const std::string last = end == std::string::npos ? "" : column.name.substr(end + 1);
+  for (const std::string& unit : {column.unit, last}) {
+    if (!unit.empty() && unit_conversion(unit, {}, wanted)) return unit;
+  }
+  return wanted;
+}
+
+// What a shell keeps as one word.
+std::string shell_word(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+std::string reference_to(const TableHead& head, std::size_t number) {
+  const std::string& title = head.columns[number].title;
+  return std::ranges::count(head.columns, title, &ColumnHead::title) == 1
+             ? title
+             : "#" + std::to_string(number + 1);
+}
+
+std::optional<ColumnWish> guess_column(const ColumnHead& column, std::size_t number,
+                                       const TableHead& head) {
+  const std::string title = lower_case(column.name);
+  for (const Hint& hint : kHints) {
+    const std::size_t at = find_word(title, hint.word);
+    if (at == std::string::npos) continue;
+    ColumnWish wish;
+    wish.from = reference_to(head, number);
+    const char axis = axis_in(title.substr(at));
+    wish.name = hint.name == "axis" ? std::string("a_") + axis : std::string(hint.name);
+    // The lateral one of several forces.
+    if (wish.name == "f" && axis != 'y') continue;
+    wish.unit = unit_for(column, wish.name);
+    return wish;
+  }
+  return std::nullopt;
+}
+
+Mapping guess_mapping(const TableHead& head) {
+  Mapping out;
+  for (std::size_t i = 0; i < head.columns.size(); ++i) {
+    std::optional<ColumnWish> wish = guess_column(head.columns[i], i, head);
+    if (!wish || (wish->name == "t" && head.has_times)) continue;
+    if (std::ranges::find(out.columns, wish->name, &ColumnWish::name) != out.columns.end())
+      continue;
+    out.columns.push_back(std::move(*wish));
+  }
+  return out;
+}
+
+std::string command_words(const Mapping& mapping) {
+  std::string words = "--map";
+  for (const ColumnWish& wish : mapping.columns) words += " " + shell_word(wish_text(wish));
+  if (mapping.rate_hz) words += fmt::format(" --sample-rate {}", *mapping.rate_hz);
+  return words;
+}
+
+}  // namespace stillhand::measurement

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/libraries/measurement/tables/suggestion.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "apps/libraries/measurement/tables/choice.hpp"
+#include "apps/libraries/measurement/tables/guess.hpp"
+#include "services/core/contract/config_error.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+// Time stamps without a unit that step by 1 or more are more likely ms, us or ns than seconds.
+// Empty: each step is 1, which a counter does too.
+std::string likely_time_unit(TableFile& file, const std::string& from) {
+  try {
+    const std::vector<double> time = file.read({find_column(file.head(), from)}).values.at(0);
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < time.size(); ++i) {
+      if (time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
+    }
+    if (steps.empty()) return "s";
+    if (std::ranges::all_of(steps, [](double step) { return step == 1.0; })) return {};
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::ranges::nth_element(steps, middle);
+    return *middle < 1.0 ? "s" : *middle < 1e3 ? "ms" : *middle < 1e6 ? "us" : "ns";
+  } catch (const ConfigError&) {
+    return "s";  // a guess for a message about something else
+  }
+}
+
+// Columns that resemble nothing are suggested as what is still missing.
+void fill_guess(const TableHead& head, bool timed, Mapping& guess) {
+  std::vector<std::string> wanted{"a_y", "f"};
+  if (!timed) wanted.insert(wanted.begin(), "t");
+  for (const std::string& name : wanted) {
+    if (std::ranges::find(guess.columns, name, &ColumnWish::name) != guess.columns.end()) continue;
+    for (std::size_t i = 0; i < head.columns.size(); ++i) {
+      const std::string from = reference_to(head, i);
+      if (std::ranges::find(guess.columns, from, &ColumnWish::from) != guess.columns.end())
+        continue;
+      ColumnWish wish{from, name, si_unit(name), {}};
+      guess.columns.insert(name == "t" ? guess.columns.begin() : guess.columns.end(), wish);
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+Mapping suggestion(TableFile& file) {
+  const TableHead& head = file.head();
+  Mapping guess = guess_mapping(head);
+  fill_guess(head, head.has_times || head.rate_hz > 0.0, guess);
+  const auto time = std::ranges::find(guess.columns, "t", &ColumnWish::name);
+  if (time != guess.columns.end() && time->unit == "s" &&
+      head.columns[find_column(head, time->from)].unit.empty()) {
+    time->unit = likely_time_unit(file, time->from);
+    if (time->unit.empty()) guess.columns.erase(time);
+  }
+  return guess;
+}
+
+void refuse_titles(TableFile& file) {
+  const TableHead& head = file.head();
+  const Mapping guess = suggestion(file);
+  const bool timed =
+      head.has_times || head.rate_hz > 0.0 ||
+      std::ranges::find(guess.columns, "t", &ColumnWish::name) != guess.columns.end();
+  throw ConfigError(head.path, "the columns " + titles_of(head),
+                    "'t [s]' and 'name [unit]'; if they are these, add " +
+                        in_one_line(command_words(guess)) + (timed ? "" : " --sample-rate HZ") +
+                        " (or --map-file FILE, to be asked)");
+}
+
+}  // namespace stillhand::measurement

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/libraries/session/misses.hpp"
+#include "apps/libraries/session/sensed_share.hpp"
+#include "apps/libraries/session/session_recording.hpp"
+#include "apps/libraries/session/trial_forces.hpp"
+#include "apps/libraries/session/trial_outcome.hpp"
+#include "services/core/identification/tracking_metrics.hpp"
+
+namespace stillhand::session {
+
+/// The first 12 s of a trial at 100 Hz, for a figure.  All arrays are equally long.
+struct Excerpt {
+  std::vector<double> time_s;         ///< from the trial's start
+  std::vector<double> feedthrough_n;  ///< f', the force the body would exert with the stick held
+  std::vector<double> motor_n;        ///< f_m, the motor's
+  std::vector<double> target_mm, cursor_mm;
+};
+
+/// One tracking trial, computed from the recording alone.
+struct TrialResult {
+  std::int64_t number;
+  Condition label;
+  identification::TrackingMetrics metrics;
+  std::int64_t missing_ticks = 0;  ///< of the tracking samples; the last one before is held
+  /// Share of the feedthrough force that the motor cancelled: 1 - RMS(f' + f_m) / RMS(f'), f' the
+  /// force the body would exert with the stick held, f_m the motor's; only where the platform
+  /// moves.
+  std::optional<double> cancelled_share;
+  /// The same from what is sensed, next to the session's trial without cancellation, Eq. SN-7.
+  std::optional<SensedShare> sensed_share;
+  /// RMS of the error of pursuit behind the trial's first third, as in the study's table of
+  /// mitigations (SU-19): what adapts may settle in it.
+  double settled_rms_error_mm = 0.0;
+  TrialForces forces;
+  /// How late the motor's force opposes f', counterforce_delay_s(); only where a prediction of f'
+  /// is all that drives it: a shaped stick answers the stick's motion.
+  std::optional<double> counterforce_delay_s;
+  /// Numbers, in the recording, of the models that the trial ran; none: it ran none of that kind.
+  struct Models {
+    std::optional<std::int32_t> force;     ///< as the motor commands name it
+    std::optional<std::int32_t> position;  ///< newest usable one of an earlier trial
+  };
+  Models models;
+  /// From a sample's acquisition to the command that answers it, by their stamps; the same.  Stamps
+  /// of other hosts are taken over to the experiment's clock.
+  struct Latency {
+    double p50_us = 0.0;
+    double p99_us = 0.0;
+    double max_us = 0.0;
+    double uncertainty_us = 0.0;  ///< of the offset between the two clocks; 0: one clock
+  };
+  std::optional<Latency> sensor_to_command;
+  /// From a sample's acquisition to the rig's step that first used the command that answers it.
+  std::optional<Latency> sensor_to_force;
+  /// Share of the measured ticks that used the command that answers their own sample; the same.
+  std::optional<double> same_tick_share;
+  Excerpt excerpt;  ///< only where the platform moves
+};
+
+/// What the model predicts of the pegged trial's true feedthrough force, as residual share
+/// RMS(f' - f_hat) / RMS(f'), for the filter at 1 kHz and for the 50 Hz model behind a zero-order
+/// hold, over one tracking trial with motion.
+struct RateConversionCost {
+  double control_filter = 0.0;
+  double zero_order_hold = 0.0;
+};
+
+/// The part of a session's summary that is computed from the recording.
+/// A process was late while a trial that counts was measured, by more than a force command may be
+/// old: the force went down, and the trial's figures hold what that did.
+struct Disturbance {
+  Condition label;  ///< of the trial
+  Miss miss;
+};
+
+struct SessionResult {
+  std::vector<TrialResult> trials;
+  std::map<std::int64_t, std::string> unrecorded;  ///< by trial: why it does not count
+  std::optional<stillhand_msgs::FeedthroughModel> model;
+  std::optional<RateConversionCost> conversion;
+  std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic
+  std::vector<std::string> damage;
+  std::string rig_parts;  ///< as the recording says it (parts_note.hpp); empty: all simulated
+  std::map<std::string, stillhand_msgs::ClockOffset> clocks;  ///< by process, the last that came
+  std::vector<Disturbance> disturbances;                      ///< in time
+};
+
+/// Computes the completed trials' results from a recording.  One of which it lacks a second or more
+/// does not count, whatever was reported while it ran.
+/// @throws ConfigError when the recording cannot be read.
+SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes);
+
+}  // namespace stillhand::session

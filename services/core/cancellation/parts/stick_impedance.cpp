@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/cancellation/parts/stick_impedance.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
+
+namespace stillhand::cancellation {
+namespace {
+
+void need(bool good, const char* key, double got, const char* want) {
+  if (!good) throw ConfigError(key, std::to_string(got), want);
+}
+
+}  // namespace
+
+StickImpedance::StickImpedance(const ImpedanceConfig& config) : config_(config) {
+  need(config.stiffness_n_m >= 0.0 && config.stiffness_n_m <= 5000.0, "impedance.stiffness_n_m",
+       config.stiffness_n_m, "0 to 5000 N/m");
+  need(config.damping_n_s_m >= 0.0 && config.damping_n_s_m <= 200.0, "impedance.damping_n_s_m",
+       config.damping_n_s_m, "0 to 200 N s/m");
+  need(std::abs(config.mass_kg) <= 2.0, "impedance.mass_kg", config.mass_kg, "-2 to 2 kg");
+  need(config.lever_m > 0.0 && config.lever_m <= 1.0, "impedance.lever_m", config.lever_m,
+       "above 0, at most 1 m");
+}
+
+double StickImpedance::step(double theta_rad, double omega_rad_s) noexcept {
+  constexpr double kRate_rad_s = 2.0 * std::numbers::pi * kInertiaCorner_hz;
+  const double x_m = config_.lever_m * theta_rad;
+  const double v_m_s = config_.lever_m * omega_rad_s;
+  const double a_m_s2 = kRate_rad_s * (v_m_s - slow_m_s_);
+  slow_m_s_ += kControlPeriod_s * a_m_s2;
+  // Eq. MI-2.
+  return -(config_.stiffness_n_m * x_m + config_.damping_n_s_m * v_m_s + config_.mass_kg * a_m_s2);
+}
+
+}  // namespace stillhand::cancellation

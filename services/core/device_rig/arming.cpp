@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/device_rig/arming.hpp"
+
+namespace stillhand::device_rig {
+
+const char* text_of(Reason reason) noexcept {
+  switch (reason) {
+    case Reason::kNone:
+      return "";
+    case Reason::kSilent:
+      return "the drive is silent";
+    case Reason::kTimedOut:
+      return "the drive's watchdog tripped";
+    case Reason::kFault:
+      return "the drive reports a fault";
+    case Reason::kOff:
+      return "the drive went off by itself";
+    case Reason::kOtherMode:
+      return "the drive is in a mode that Stillhand does not command";
+    case Reason::kNotArmed:
+      return "the drive does not follow";
+    case Reason::kUnchecked:
+      return "the drive was away or started again; its settings are not read back";
+    case Reason::kEncoder:
+      return "the angle of the drive jumped";
+  }
+  return "";
+}
+
+Arming::Output Arming::step(const Input& input) noexcept {
+  switch (stage_) {
+    case Stage::kArmed:
+      return armed(input);
+    case Stage::kFaulted:
+      return faulted(input);
+    default:
+      return idle(input);
+  }
+}
+
+Reason Arming::trouble(const Input& input) const noexcept {
+  if (!input.fresh) return Reason::kSilent;
+  if (input.jumped) return Reason::kEncoder;
+  if (input.mode == DriveMode::kFault) return Reason::kFault;
+  if (input.mode == DriveMode::kTimedOut) return Reason::kTimedOut;
+  if (!input.checked) return Reason::kUnchecked;
+  if (confirmed_ && input.mode == DriveMode::kOff) return Reason::kOff;
+  if (confirmed_ && input.mode != DriveMode::kTorque) return Reason::kOtherMode;
+  if (!confirmed_ && since_ticks_ > kPatience_ticks) return Reason::kNotArmed;
+  return Reason::kNone;
+}
+
+Arming::Output Arming::fail(const Input& input, Reason reason) noexcept {
+  stage_ = Stage::kFaulted;
+  reason_ = reason;
+  fault_ = input.mode == DriveMode::kFault ? input.fault : 0;
+  fault_word_ = input.fault_word;
+  blocked_trial_ = input.trial;
+  return {stage_, Order::kStop, reason_, true, false};
+}
+
+Arming::Output Arming::idle(const Input& input) noexcept {
+  stage_ = !input.fresh ? Stage::kAbsent : input.checked ? Stage::kChecked : Stage::kFound;
+  if (stage_ == Stage::kChecked && input.mode != DriveMode::kOff) {
+    // Whatever it does, it was not asked to: driver off, which clears a latched timeout, too.
+    return {stage_, Order::kStop, Reason::kNone, false, false};
+  }
+  const bool may = input.wanted && input.trial != blocked_trial_ && !input.jumped;
+  if (stage_ != Stage::kChecked || !may || !input.force_zero)
+    return {stage_, Order::kQuery, Reason::kNone, false, false};
+  stage_ = Stage::kArmed;
+  since_ticks_ = 0;
+  confirmed_ = false;
+  return {stage_, Order::kTorque, Reason::kNone, false, false};
+}
+
+Arming::Output Arming::armed(const Input& input) noexcept {
+  ++since_ticks_;
+  if (const Reason reason = trouble(input); reason != Reason::kNone) return fail(input, reason);
+  confirmed_ = confirmed_ || input.mode == DriveMode::kTorque;
+  // Without permission the force ramps down first, then the driver goes off.
+  if (!input.wanted && input.force_zero) {
+    stage_ = Stage::kChecked;
+    return {stage_, Order::kStop, Reason::kNone, false, false};
+  }
+  return {stage_, Order::kTorque, Reason::kNone, false, confirmed_};
+}
+
+Arming::Output Arming::faulted(const Input& input) noexcept {
+  const bool quiet = input.fresh && input.mode == DriveMode::kOff && !input.jumped;
+  // Another trial, and a drive that is off and free of faults: it counts as found again.
+  if (quiet && input.trial != blocked_trial_) {
+    stage_ = Stage::kFound;
+    reason_ = Reason::kNone;
+    return idle(input);
+  }
+  return {stage_, quiet ? Order::kQuery : Order::kStop, reason_, false, false};
+}
+
+}  // namespace stillhand::device_rig

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/effects/asymmetry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/core/diagnosis/effects/loop_proposals.hpp"
+#include "services/core/diagnosis/effects/parts.hpp"
+#include "services/core/diagnosis/model/loop_sizes.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kLargest = 0.9;  // of a half-line's slope change
+
+bool quadratic(const Effect& effect) { return effect.form.starts_with("square"); }
+
+class Asymmetry final : public EffectKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "asymmetry"; }
+  [[nodiscard]] Stage stage(const Effect& effect) const override {
+    if (effect.form == "slopes at the output") return Stage::kOutputValue;
+    if (effect.form == "slopes at the input") return Stage::kInputValue;
+    return effect.channels.empty() ? Stage::kFeedback : Stage::kTerm;
+  }
+  // Slope 1 + kappa for positive, 1 - kappa for negative values.
+  [[nodiscard]] double mapped(const Effect& effect, double value) const override {
+    return value + effect.value(0) * std::abs(value);
+  }
+  [[nodiscard]] double slope(const Effect& effect, double value) const override {
+    return 1.0 + (value > 0.0 ? effect.value(0) : -effect.value(0));
+  }
+  [[nodiscard]] Nonlinearity feedback(const Effect& effect) const override {
+    if (quadratic(effect)) {
+      return {[](double z, LoopMemory& /*memory*/) { return z * z; }, threshold_of(effect)};
+    }
+    return {[](double z, LoopMemory& /*memory*/) { return std::abs(z); }, threshold_of(effect)};
+  }
+  void terms(const Effect& effect, const Signals& signals,
+             const std::vector<double>& /*body_output*/, Columns& columns) const override {
+    const Signal& signal = signals.at(effect.channels.at(0));
+    std::vector<double> even(signals.size());
+    for (std::size_t n = 0; n < even.size(); ++n) {
+      const double x = signal.values[n] - effect.value(0);
+      even[n] = quadratic(effect) ? x * x : std::abs(x);
+    }
+    columns.push_back(std::move(even));
+  }
+  [[nodiscard]] std::string column_unit(const Effect& effect, const Signals& signals,
+                                        std::size_t /*i*/) const override {
+    const std::string& unit = signals.at(effect.channels.at(0)).unit;
+    return quadratic(effect) ? unit_power(unit, 2) : unit;
+  }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override;
+  [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
+  [[nodiscard]] std::string evidence(const Effect& effect) const override {
+    if (!effect.channels.empty() && stage(effect) == Stage::kTerm) {
+      return "the residual has an even part in " + effect.channels.front();
+    }
+    return "pushing and pulling differ: an even part, " + effect.form;
+  }
+};
+
+std::vector<Size> Asymmetry::sizes(const SizeCase& at) const {
+  const Effect& effect = at.effect();
+  if (stage(effect) == Stage::kTerm) {
+    const Signal& signal = at.signals.at(effect.channels.at(0));
+    const double x = largest_deflection(signal.values, effect.value(0), at.signals);
+    const double factor =
+        through_body(effect) ? through_body_at(at, 0.0).real() : effect.coefficients.at(0);
+    return {{"even_force", at.model.output_unit, factor * (quadratic(effect) ? x * x : x),
+             "at " + with_unit(x, signal.unit) + " from the centre, the largest seen" +
+                 (through_body(effect) ? ", at 0 Hz behind the body" : "")}};
+  }
+  if (stage(effect) != Stage::kFeedback) {
+    const double kappa = effect.value(0);
+    return {{"slope_ratio", "-", (1.0 + kappa) / (1.0 - kappa),
+             "of positive values over that of negative ones"}};
+  }
+  const double slope = std::copysign(1.0, output_over_argument(at)) *
+                       (quadratic(effect) ? 2.0 * largest_argument(at) : 1.0);
+  std::string where = "where the output is positive, over that where it is negative";
+  if (quadratic(effect)) where += ", at the largest motion seen";
+  return {stiffness_ratio(at, slope, -slope, where)};
+}
+
+std::vector<Proposal> Asymmetry::proposed(const Screening& screening) const {
+  const Signals& signals = screening.signals();
+  std::vector<Proposal> proposals;
+  const auto add = [&proposals](std::vector<Proposal> more) {
+    for (Proposal& each : more) proposals.push_back(std::move(each));
+  };
+  add(loop_proposals(
+      screening, "asymmetry", "slopes",
+      [](double z, LoopMemory& /*memory*/) { return std::abs(z); }, true));
+  add(loop_proposals(
+      screening, "asymmetry", "square", [](double z, LoopMemory& /*memory*/) { return z * z; },
+      true));
+  std::vector<double> size = screening.prediction();
+  for (double& y : size) y = std::abs(y);
+  const ScreenedGain at_output = screening.gain({size});
+  proposals.push_back({{"asymmetry",
+                        "slopes at the output",
+                        {},
+                        {{"slope_change", "-", std::clamp(at_output.coefficients[0], -0.5, 0.5),
+                          -kLargest, kLargest}},
+                        {}},
+                       at_output.share,
+                       {}});
+  const Signal& input = signals.inputs().front();
+  std::vector<double> rectified = input.values;
+  for (double& u : rectified) u = std::abs(u);
+  const ScreenedGain at_input = screening.gain({response_of(screening, rectified)});
+  proposals.push_back({{"asymmetry",
+                        "slopes at the input",
+                        {input.name},
+                        {{"slope_change", "-", std::clamp(at_input.coefficients[0], -0.5, 0.5),
+                          -kLargest, kLargest}},
+                        {}},
+                       at_input.share,
+                       {}});
+  std::vector<Proposal> of_channels;
+  for (const Signal& signal : signals.all()) {
+    if (signal.derived) continue;
+    for (const char* form : {"square, beside the body", "square, through the body"}) {
+      auto [effect, gain] = screening.with_coefficients(
+          {"asymmetry", form, {signal.name}, {constant("centre", signal.unit, signal.mean)}, {}});
+      of_channels.push_back({std::move(effect), gain, {}});
+    }
+  }
+  add(best_of(std::move(of_channels), 1));
+  return best_of(std::move(proposals), 4);
+}
+
+}  // namespace
+
+const EffectKind& asymmetry_kind() {
+  static const Asymmetry kKind;
+  return kKind;
+}
+
+}  // namespace stillhand::diagnosis

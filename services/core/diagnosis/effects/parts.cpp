@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/effects/parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/core/diagnosis/digits.hpp"
+#include "services/core/diagnosis/model/loop.hpp"
+
+namespace stillhand::diagnosis {
+
+std::vector<Proposal> best_of(std::vector<Proposal> proposals, std::size_t count) {
+  std::ranges::stable_sort(proposals, std::ranges::greater(), &Proposal::gain);
+  if (proposals.size() > count) proposals.resize(count);
+  return proposals;
+}
+
+std::vector<double> response_of(const Screening& screening, std::span<const double> numerator,
+                                const std::vector<double>& input) {
+  const auto& stretches = screening.signals().stretches();
+  std::vector<double> x = through_poles(input, screening.model().body.denominator, stretches);
+  std::vector<double> y(x.size(), 0.0);
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      for (std::size_t i = 0; i < numerator.size() && i <= n - stretch.first; ++i) {
+        y[n] += numerator[i] * x[n - i];
+      }
+    }
+  }
+  return y;
+}
+
+std::vector<double> response_of(const Screening& screening, const std::vector<double>& input) {
+  return response_of(screening, screening.model().body.numerators.front(), input);
+}
+
+double deviation_of(const std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double x : values) mean += x;
+  mean /= static_cast<double>(values.size());
+  double square = 0.0;
+  for (const double x : values) square += (x - mean) * (x - mean);
+  return std::sqrt(square / static_cast<double>(values.size()));
+}
+
+double quantile_of(std::vector<double> values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + at);
+  return values[static_cast<std::size_t>(at)];
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  constexpr int kDigits = 3;
+  return digits(value, kDigits) + (unit.empty() || unit == "-" ? "" : " " + unit);
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/fitting/shape_exchange.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/loop.hpp"
+#include "services/core/diagnosis/model/model_run.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+using Polynomial = std::vector<double>;  // by powers of q^-1
+
+// The first `terms` of a / b as a series in q^-1: the quotient, where b divides a.
+Polynomial quotient(Polynomial a, const Polynomial& b, std::size_t terms) {
+  a.resize(std::max(a.size(), terms + b.size()), 0.0);
+  Polynomial result(terms);
+  for (std::size_t i = 0; i < terms; ++i) {
+    result[i] = a[i] / b[0];
+    for (std::size_t j = 0; j < b.size(); ++j) a[i + j] -= result[i] * b[j];
+  }
+  return result;
+}
+
+Polynomial sum(const Polynomial& a, double factor, const Polynomial& b) {
+  Polynomial result(std::max(a.size(), b.size()), 0.0);
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] += a[i];
+  for (std::size_t i = 0; i < b.size(); ++i) result[i] += factor * b[i];
+  return result;
+}
+
+// The reverse of loop_path(): its polynomials as the effect's coefficients.
+std::vector<double> coefficients_of(const LoopPath& path) {
+  std::vector<double> all = difference_basis(path.e);
+  const auto append = [&all](const std::vector<double>& part) {
+    all.insert(all.end(), part.begin(), part.end());
+  };
+  append(difference_basis(path.n));
+  append(difference_basis({path.m.begin() + 1, path.m.end()}));
+  return all;
+}
+
+std::vector<double> shaped(const Effect& effect, const std::vector<double>& z, double scale,
+                           const Signals& signals) {
+  const Nonlinearity nonlinearity = effect_kind(effect.kind).feedback(effect);
+  std::vector<double> phi(z.size());
+  for (const Stretch& stretch : signals.stretches()) {
+    LoopMemory memory;
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      phi[n] = nonlinearity.phi(z[n] / (scale * nonlinearity.threshold), memory);
+    }
+  }
+  return phi;
+}
+
+// phi(z) ~ alpha psi(z / beta) + gamma z
+struct Match {
+  double alpha = 0.0;
+  double beta = 1.0;
+  double gamma = 0.0;
+};
+
+Match matched(const Effect& own, const Effect& other, const std::vector<double>& z,
+              const Signals& signals) {
+  constexpr std::array kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
+  const auto column = [](const std::vector<double>& x) {
+    return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+  };
+  const std::vector<double> phi = shaped(own, z, 1.0, signals);
+  Match best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double beta : kScales) {
+    const std::vector<double> psi = shaped(other, z, beta, signals);
+    Eigen::MatrixXd columns(static_cast<Eigen::Index>(z.size()), 2);
+    columns << column(psi), column(z);
+    const Eigen::Vector2d factors = columns.colPivHouseholderQr().solve(column(phi));
+    const double left = (column(phi) - columns * factors).squaredNorm();
+    if (left < least) {
+      least = left;
+      best = {factors[0], beta, factors[1]};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+bool ends_inside_body(const Model& model) {
+  return !model.effects.empty() && acts_at(model.effects.back(), Stage::kFeedback) &&
+         !loop_path(model.effects.back(), model.body.order()).of_output();
+}
+
+Model lifted(const Model& model) {
+  constexpr double kPole = 0.5;  // faster than anything that the input excites
+  const Polynomial factor{1.0, -kPole};
+  Model result = model;
+  Effect& effect = result.effects.back();
+  LoopPath path = loop_path(effect, model.body.order());
+  for (Polynomial* each : {&path.e, &path.n, &path.m}) *each = product(*each, factor);
+  effect.coefficients = coefficients_of(path);
+  result.body.denominator = product(model.body.denominator, factor);
+  for (Polynomial& each : result.body.numerators) each = product(each, factor);
+  return result;
+}
+
+std::optional<Model> with_shape_of(const Effect& other, const Model& model,
+                                   const Signals& signals) {
+  const FreeRun run = free_run(model, signals);
+  if (!run.finite) return std::nullopt;
+  const std::size_t order = model.body.order();
+  const LoopPath own = loop_path(model.effects.back(), order);
+  const Match match = matched(model.effects.back(), other, run.argument, signals);
+  Model result = model;
+  const Polynomial& a = model.body.denominator;
+  result.body.denominator = sum(a, -match.gamma, own.m);
+  Polynomial& b = result.body.numerators.front();
+  b = quotient(sum(product(b, result.body.denominator), match.gamma, product(own.e, own.n)), a,
+               order + 1);
+  LoopPath path = own;
+  for (double& each : path.e) each *= match.alpha;
+  for (double& each : path.n) each /= match.beta;
+  for (double& each : path.m) each *= match.alpha / match.beta;
+  result.effects.back() = other;
+  result.effects.back().coefficients = coefficients_of(path);
+  if (!is_stable(result.body)) stabilise(result.body);
+  if (!free_run(result, signals).finite) return std::nullopt;
+  return result;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "services/core/diagnosis/model/effect.hpp"
+#include "services/core/diagnosis/model/model.hpp"
+#include "services/core/diagnosis/model/steady_start.hpp"
+#include "services/core/diagnosis/signals.hpp"
+
+namespace stillhand::diagnosis {
+
+/// How a nonlinearity phi sits in the body of order p, METHOD Eq. DG-4; e, n, m are its
+/// coefficients in the difference basis D = 1 - q^-1:
+///
+///   A y_b = B u + E phi(z)
+///   "of the output":  z = y_b,                      E = q^-1 sum_{i<p} e_i D^i          (p
+///   numbers) "inside":         A z = N u + M phi(z),         E = sum_{i<=p} e_i D^i, N alike,
+///                                                   M = q^-1 sum_{i<p} m_i D^i       (3p + 2)
+///
+/// M without a term of its own sample: no algebraic loop.
+struct LoopPath {
+  std::vector<double> e;  ///< by powers of q^-1, p + 1
+  std::vector<double> n;  ///< p + 1, empty: z = y_b
+  std::vector<double> m;  ///< p + 1, the first 0
+
+  [[nodiscard]] bool of_output() const noexcept { return n.empty(); }
+};
+
+/// A body, the effects that feed back in it, and what reaches it, by input.
+struct LoopCase {
+  const Body* body = nullptr;
+  std::vector<const Effect*> feedback;
+  const std::vector<Settled>* inputs = nullptr;
+};
+
+/// Signals in the loop, each as long as the measurement.
+struct LoopRun {
+  bool finite = true;                 ///< false: it ran away
+  std::vector<double> output;         ///< y_b
+  std::vector<double> argument;       ///< z of the first nonlinearity
+  std::vector<double> phi;            ///< its phi(z)
+  std::vector<double> output_before;  ///< [stretches] level of y_b before each
+  std::vector<double> phi_before;     ///< [stretches] of the first phi(z)
+};
+
+/// Coefficients that a feedback effect has for a body of this order.
+std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept;
+/// E times the effect's share, Eq. DG-68.
+LoopPath loop_path(const Effect& effect, std::size_t order);
+
+/// As many cases take hardly longer than one.
+inline constexpr std::size_t kLoopLanes = 4;
+
+/// Runs bodies with their nonlinearities, every stretch from the steady state of its inputs'
+/// levels, Eq. DG-54.  An effect with a range holds phi at its edges, Eq. DG-56.
+/// @param cases  one structure (orders, effects) with different numbers; none is without feedback
+/// @param runs  as many
+void run_loops(std::span<const LoopCase> cases, const Signals& signals, std::span<LoopRun> runs);
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/model/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "services/core/signal/difference_model.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+// A denominator 1 + q^-1 g(q) by g in the difference basis.
+std::vector<double> denominator_numbers(const std::vector<double>& denominator) {
+  return difference_basis({denominator.begin() + 1, denominator.end()});
+}
+
+double bound_on(const std::complex<double>& pole, const Body& body) {
+  if (std::abs(std::arg(pole)) >= body.least_turn) return body.largest_radius;
+  return std::min(body.slowest_radius, body.largest_radius);
+}
+
+void append(const std::vector<double>& values, std::vector<double>& all) {
+  all.insert(all.end(), values.begin(), values.end());
+}
+
+}  // namespace
+
+std::vector<double> difference_basis(const std::vector<double>& coefficients) {
+  // q^-1 = 1 - D, so c(q^-1) = c(1 - D): Horner's scheme with polynomials in D.
+  std::vector<double> result;
+  for (auto c = coefficients.rbegin(); c != coefficients.rend(); ++c) {
+    result.push_back(0.0);
+    for (std::size_t i = result.size(); i-- > 1;) result[i] -= result[i - 1];
+    result[0] += *c;
+  }
+  return result;
+}
+
+std::size_t complexity(const Model& model) noexcept {
+  std::size_t count = 1 + model.body.order();
+  for (const auto& numerator : model.body.numerators) count += numerator.size();
+  for (const Effect& effect : model.effects) count += complexity(effect);
+  return count;
+}
+
+bool is_stable(const Body& body) {
+  const signal::DifferenceModel model{1.0, body.denominator, body.denominator};
+  if (!signal::well_formed(model) || !signal::is_stable(model)) return false;
+  return std::ranges::all_of(signal::poles(model), [&](const std::complex<double>& pole) {
+    return std::abs(pole) <= bound_on(pole, body);
+  });
+}
+
+bool rings_near_bound(const Body& body) {
+  // A decay within half of the time: the radius squared.
+  const double near = body.largest_radius * body.largest_radius;
+  const auto poles = signal::poles({1.0, body.denominator, body.denominator});
+  return std::ranges::any_of(poles, [&](const std::complex<double>& pole) {
+    return std::abs(std::arg(pole)) >= body.least_turn && std::abs(pole) > near;
+  });
+}
+
+void stabilise(Body& body) {
+  std::vector<std::complex<double>> polynomial{1.0};
+  for (std::complex<double> pole : signal::poles({1.0, body.denominator, body.denominator})) {
+    if (std::abs(pole) > 1.0) pole = 1.0 / std::conj(pole);
+    // A hair inside, so that rounding doesn't put it out again.
+    const double bound = bound_on(pole, body) - 1e-6;
+    if (std::abs(pole) > bound) pole *= bound / std::abs(pole);
+    polynomial.emplace_back(0.0);
+    for (std::size_t i = polynomial.size(); i-- > 1;) polynomial[i] -= pole * polynomial[i - 1];
+  }
+  std::ranges::transform(polynomial, body.denominator.begin(),
+                         [](const auto& c) { return c.real(); });
+}
+
+Eigen::VectorXd packed(const Model& model) {
+  std::vector<double> all{model.body.offset};
+  for (const auto& numerator : model.body.numerators) append(difference_basis(numerator), all);
+  append(denominator_numbers(model.body.denominator), all);
+  for (const Effect& effect : model.effects) {
+    if (!effect.is_whole()) continue;
+    append(effect.coefficients, all);
+    for (const Parameter& parameter : effect.parameters) {
+      if (parameter.fitted) all.push_back(parameter.value);
+    }
+  }
+  return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+void unpack(const Eigen::VectorXd& numbers, Model& model) {
+  const double* next = numbers.data();
+  const auto take = [&next](std::size_t count) {
+    std::vector<double> values(next, next + count);
+    next += count;
+    return values;
+  };
+  model.body.offset = *next++;
+  for (auto& numerator : model.body.numerators) {
+    numerator = difference_basis(take(numerator.size()));
+  }
+  const auto tail = difference_basis(take(model.body.order()));
+  std::ranges::copy(tail, model.body.denominator.begin() + 1);
+  for (Effect& effect : model.effects) {
+    if (!effect.is_whole()) continue;
+    effect.coefficients = take(effect.coefficients.size());
+    for (Parameter& parameter : effect.parameters) {
+      if (parameter.fitted) {
+        parameter.value = std::clamp(*next++, parameter.lower, parameter.upper);
+      }
+    }
+  }
+}
+
+}  // namespace stillhand::diagnosis

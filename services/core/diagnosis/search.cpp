@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "services/core/diagnosis/fitting/noise_model.hpp"
+#include "services/core/diagnosis/recordings_out.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
+                     std::size_t candidates, const SearchOptions& options) {
+  const Comparison comparison = compared(current, trial.held_out);
+  // Bursts lie in few blocks, too few for the signs; that they stand out has been tested already.
+  if (passes_over_samples(trial)) return 1.0 - comparison.rmse_ratio > options.large_fall;
+  return worth_it(comparison, options, least_fall, candidates);
+}
+
+// Effects of time alone describe one recording and cannot be tested on another.
+bool asks_recordings(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return !passes_over_samples(trial) && !effect_kind(effect.kind).time_only(effect);
+}
+
+// Which of them is to be added, if any: the chosen one, unless one of the recordings that were
+// joined refutes it; then the next.  Those that are refuted leave `tried`.
+std::optional<std::size_t> confirmed(std::vector<Trial>& tried, const HeldOut& current,
+                                     double least_fall, const RecordingsOut& recordings,
+                                     const SearchOptions& options, SearchResult& result) {
+  const std::size_t candidates = tried.size();
+  std::vector<double> before;
+  const auto worth_adding = [&](const Trial& trial) {
+    return is_worth_adding(trial, current, least_fall, candidates, options);
+  };
+  while (!tried.empty() && std::isfinite(tried.front().rmse)) {
+    const std::size_t chosen = chosen_of(tried, current.rmse(), options, worth_adding);
+    const Trial& trial = tried[chosen];
+    if (!worth_adding(trial)) break;
+    if (!recordings.several() || !asks_recordings(trial)) return chosen;
+    if (before.empty()) before = recordings.errors(result.model);
+    const std::vector<double> fall = falls(before, recordings.errors(trial.model));
+    if (!refuted(fall, options.least_fall)) return chosen;
+    result.refuted.push_back({trial.model.effects.back(), fall});
+    tried.erase(tried.begin() + static_cast<std::ptrdiff_t>(chosen));
+  }
+  return std::nullopt;
+}
+
+// Drops effects that the later ones have made idle.  True when one left.
+bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
+            const SearchOptions& options) {
+  if (result.model.effects.size() < 2) return false;
+  const HeldOut with = held_out(result.model, signals, blocks);
+  for (std::size_t e = 0; e + 1 < result.model.effects.size(); ++e) {
+    const Effect& effect = result.model.effects[e];
+    if (effect_kind(effect.kind).stage(effect) == Stage::kWeight) continue;
+    Model without = result.model;
+    without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(e));
+    const Trial trial =
+        judged_trial(std::move(without), signals, blocks, options.fit_iterations, true);
+    if (!trial.held_out.finite ||
+        worth_it(compared(trial.held_out, with), options, options.least_fall, 1))
+      continue;
+    result.model = trial.model;
+    result.additions.erase(result.additions.begin() + static_cast<std::ptrdiff_t>(e));
+    return true;
+  }
+  return false;
+}
+
+// In any order.
+bool same_effects(const Model& a, const Model& b) {
+  return std::ranges::is_permutation(a.effects, b.effects, is_same);
+}
+
+// The forward selection, from the baseline alone or with bursts left out from the start.
+class Forward {
+ public:
+  Forward(const Forward&) = delete;
+  Forward& operator=(const Forward&) = delete;
+  Forward(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
+          const SearchOptions& options, const ForEach& for_each,
+          const std::function<bool(const std::string&)>& progress)
+      : baseline_(baseline),
+        signals_(signals),
+        blocks_(blocks),
+        options_(options),
+        progress_(progress),
+        impulse_response_(fit_impulse_response(signals)),
+        settings_{blocks, impulse_response_, baseline.order, options, for_each} {}
+
+  [[nodiscard]] SearchResult from_baseline() const {
+    SearchResult result;
+    result.model = baseline_.model;
+    extend(result);
+    return result;
+  }
+
+  // Bursts that show only once another effect is in the model were in every comparison that chose
+  // that effect, and may have chosen it.
+  [[nodiscard]] SearchResult without_bursts(const Effect& bursts) const {
+    SearchResult result;
+    const HeldOut before = held_out(baseline_.model, signals_, blocks_);
+    result.model = baseline_.model;
+    result.model.effects.push_back(bursts);
+    Trial trial = judged_trial(result.model, signals_, blocks_, options_.fit_iterations, true);
+    if (!trial.held_out.finite) return result;
+    result.model = trial.model;
+    const HeldOut after = trial.held_out;
+    result.additions.push_back(
+        {before, after, before, compared(before, after), {std::move(trial)}, 0, {}});
+    extend(result);
+    return result;
+  }
+
+ private:
+  // Judged behind a filter that makes this model's residual white, Eq. DG-61.
+  [[nodiscard]] Signals judged_by(const Model& model) const {
+    FreeRun run;
+    const Eigen::VectorXd residual = residual_of(model, signals_, run);
+    return signals_.whitened(run.finite ? whitening_taps(residual, signals_)
+                                        : std::vector<double>());
+  }
+
+  void extend(SearchResult& result) const {
+    while (progress_("effect " + std::to_string(result.additions.size() + 1))) {
+      Signals judged = signals_;
+      if (!extended(result, judged)) return;
+      if (retest(result, judged, blocks_, options_)) ++result.removed;
+      if (result.removed > options_.most_effects) return;  // it goes in circles
+    }
+  }
+
+  // One round.  What is missing colours the residual too: noise is what the best candidate leaves.
+  // Where that is coloured, the round is made again behind the filter, and the first one counts
+  // only if nothing is worth adding there.
+  // @param judged  gets the signals by which an effect was added
+  bool extended(SearchResult& result, Signals& judged) const {
+    if (result.whitened) fit(result.model, signals_, blocks_, refitting());
+    const HeldOut current = held_out(result.model, signals_, blocks_);
+    if (is_rounding(current.rmse(), signals_)) return false;
+    Screened screened =
+        screened_trials(result.model, current.rmse(), signals_, settings_, Shapes::kNamed);
+    std::optional<SearchResult> behind;
+    if (!screened.trials.empty() && std::isfinite(screened.trials.front().rmse)) {
+      fit_first(screened, current.rmse(), signals_, settings_);
+      Signals whitened = judged_by(screened.trials.front().model);
+      if (whitened.is_whitened()) {
+        behind = refitted_behind(whitened, result);
+        judged = std::move(whitened);
+      }
+    }
+    if (behind && extended_as_judged(*behind, judged, with_own_bodies(screened.trials), result)) {
+      return true;
+    }
+    if (extend_by_one(result, current,
+                      finished_trials(std::move(screened), current.rmse(), signals_, settings_),
+                      signals_)) {
+      judged = signals_;
+      return true;
+    }
+    return extended_freely(behind ? *behind : result, judged, result);
+  }
+
+  [[nodiscard]] SearchResult refitted_behind(const Signals& whitened,
+                                             const SearchResult& result) const {
+    SearchResult other = result;
+    if (other.model.effects.empty()) {
+      other.model = fit_baseline(whitened, blocks_, baseline_.order).model;
+    } else {
+      fit(other.model, whitened, blocks_, refitting());
+    }
+    other.whitened = true;
+    return other;
+  }
+
+  // @param known  of the round without the filter
+  bool extended_as_judged(SearchResult& behind, const Signals& judged, std::vector<Proposal> known,
+                          SearchResult& result) const {
+    const HeldOut current = held_out(behind.model, judged, blocks_);
+    Screened screened = screened_trials(behind.model, current.rmse(), judged, settings_,
+                                        Shapes::kNamed, std::move(known));
+    if (!extend_by_one(behind, current,
+                       finished_trials(std::move(screened), current.rmse(), judged, settings_),
+                       judged)) {
+      return false;
+    }
+    result = std::move(behind);
+    return true;
+  }
+
+  // No named kind is worth adding.  If a free form is, something is there; a named kind that
+  // explains as much with fewer numbers is then added all the same.
+  // @param from  after its round: `last_tried` holds the named ones as they were judged
+  bool extended_freely(SearchResult from, const Signals& judged, SearchResult& result) const {
+    // Next to a law it would take the law's numbers.
+    if (options_.most_effects == 0 || !from.additions.empty()) return false;
+    const HeldOut current = held_out(from.model, judged, blocks_);
+    std::vector<Trial> tried = free_forms(from.model, current, judged);
+    if (!confirmed(tried, current, options_.least_fall, RecordingsOut(judged, blocks_), options_,
+                   from)) {
+      return false;
+    }
+    for (const Trial& named : from.last_tried) {
+      if (std::isfinite(named.rmse) && !passes_over_samples(named) &&
+          is_worth_adding(named, current, options_.least_fall, 1, options_)) {
+        tried.push_back(named);
+      }
+    }
+    std::ranges::stable_sort(tried, by_rmse);
+    const std::size_t chosen = chosen_of(tried, current.rmse(), options_);
+    if (!add(from, current, std::move(tried), chosen, judged, options_.least_fall)) return false;
+    result = std::move(from);
+    return true;
+  }
+
+  [[nodiscard]] static FitOptions refitting() {
+    FitOptions options;
+    options.max_iterations = 40;
+    options.relative_tolerance = 1e-9;
+    return options;
+  }
+
+  [[nodiscard]] std::vector<Trial> free_forms(const Model& model, const HeldOut& current,
+                                              const Signals& judged) const {
+    return finished_trials(screened_trials(model, current.rmse(), judged, settings_, Shapes::kAny),
+                           current.rmse(), judged, settings_);
+  }
+
+  [[nodiscard]] bool extend_by_one(SearchResult& result, const HeldOut& current,
+                                   std::vector<Trial> tried, const Signals& judged) const {
+    const double least_fall =
+        result.additions.empty() ? options_.first_least_fall : options_.least_fall;
+    auto chosen = result.additions.size() == options_.most_effects
+                      ? std::nullopt
+                      : confirmed(tried, current, least_fall, RecordingsOut(judged, blocks_),
+                                  options_, result);
+    if (chosen && result.additions.empty()) {
+      // A kind that fits a part of a shape, or bursts, which explain nothing, may hide it.
+      const Trial& named = tried[*chosen];
+      const double clearly_less = passes_over_samples(named)
+                                      ? (1.0 - options_.large_fall) * current.rmse()
+                                      : (1.0 - options_.tie) * named.rmse;
+      std::vector<Trial> shapes = free_forms(result.model, current, judged);
+      if (!shapes.empty() && shapes.front().rmse < clearly_less) {
+        const auto shape = confirmed(shapes, current, options_.least_fall,
+                                     RecordingsOut(judged, blocks_), options_, result);
+        if (shape && shapes[*shape].rmse < clearly_less) {
+          tried = std::move(shapes);
+          chosen = shape;
+        }
+      }
+    }
+    if (chosen && add(result, current, tried, *chosen, judged, least_fall)) return true;
+    // Where the list has named another, the one with the least error may pass without the filter.
+    if (chosen && *chosen != 0 &&
+        is_worth_adding(tried.front(), current, least_fall, tried.size(), options_) &&
+        add(result, current, tried, 0, judged, least_fall)) {
+      return true;
+    }
+    if (!tried.empty() && std::isfinite(tried.front().rmse)) {
+      result.last_tried = std::move(tried);
+      result.last_current = current;
+    }
+    return false;
+  }
+
+  // Of the model as the verdict would have it.
+  [[nodiscard]] HeldOut held_out_unfiltered(Model model) const {
+    fit(model, signals_, blocks_, refitting());
+    return held_out(model, signals_, blocks_);
+  }
+
+  // Behind a filter the error without it has to fall as well.
+  bool add(SearchResult& result, const HeldOut& current, std::vector<Trial> tried,
+           std::size_t chosen, const Signals& judged, double least_fall) const {
+    HeldOut before = current;
+    HeldOut after = tried[chosen].held_out;
+    if (judged.is_whitened()) {
+      before = held_out_unfiltered(result.model);
+      after = held_out_unfiltered(tried[chosen].model);
+      const double fall = std::min(least_fall, options_.large_fall);
+      if (!(after.rmse() < (1.0 - fall) * before.rmse())) return false;
+    }
+    Addition addition{before,           after,  current, compared(current, tried[chosen].held_out),
+                      std::move(tried), chosen, {}};
+    addition.ties = tied_kinds(addition.tried, chosen, current.rmse(), options_);
+    result.model = addition.tried[chosen].model;
+    result.additions.push_back(std::move(addition));
+    return true;
+  }
+
+  const Baseline& baseline_;
+  const Signals& signals_;
+  const Blocks& blocks_;
+  const SearchOptions& options_;
+  const std::function<bool(const std::string&)>& progress_;
+  const ImpulseResponse impulse_response_;
+  const RoundSettings settings_;
+};
+
+}  // namespace
+
+SearchResult search(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
+                    const SearchOptions& options, const ForEach& for_each,
+                    const std::function<bool(const std::string&)>& progress) {
+  const Forward forward(baseline, signals, blocks, options, for_each, progress);
+  SearchResult result = forward.from_baseline();
+  const auto bursts = std::ranges::find_if(result.additions, [](const Addition& addition) {
+    return passes_over_samples(addition.tried[addition.chosen]);
+  });
+  if (bursts == result.additions.end() || bursts == result.additions.begin()) return result;
+  SearchResult other = forward.without_bursts(bursts->tried[bursts->chosen].model.effects.back());
+  if (other.additions.empty() || same_effects(other.model, result.model)) return result;
+  const auto ended = [&](const SearchResult& each) {
+    Trial trial{each.model, held_out(each.model, signals, blocks)};
+    trial.rmse =
+        trial.held_out.finite ? trial.held_out.rmse() : std::numeric_limits<double>::infinity();
+    return trial;
+  };
+  const double without_any = other.additions.front().after.rmse();
+  // Which kind comes last says nothing of two searches: the error decides.
+  const auto by_error = [](const Trial&) { return false; };
+  const std::vector<Trial> both{ended(result), ended(other)};
+  return chosen_of(both, without_any, options, by_error) == 0 ? result : other;
+}
+
+}  // namespace stillhand::diagnosis

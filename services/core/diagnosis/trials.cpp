@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "services/core/diagnosis/fitting/screening.hpp"
+#include "services/core/diagnosis/fitting/shape_exchange.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kNear = 1.35;  // of the best error: worth fitting to the end
+
+}  // namespace
+
+Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, int iterations,
+                   bool refitting) {
+  Trial trial;
+  FitOptions options;
+  options.max_iterations = iterations;
+  options.relative_tolerance = 1e-8;
+  options.grams_at_end = true;
+  const FitResult fitted = fit(model, signals, blocks, options);
+  if (refitting) {
+    trial.held_out = held_out(model, signals, blocks, fitted.grams ? &*fitted.grams : nullptr);
+  } else if (fitted.grams) {
+    trial.held_out = held_out_linearised(*fitted.grams, blocks);
+  }
+  trial.rmse =
+      trial.held_out.finite ? trial.held_out.rmse() : std::numeric_limits<double>::infinity();
+  trial.added = model.effects.empty() ? 0 : model.effects.size() - 1;
+  trial.model = std::move(model);
+  return trial;
+}
+
+namespace {
+
+bool same_shape(const Model& a, const Model& b) {
+  return a.effects.back().kind == b.effects.back().kind &&
+         a.effects.back().form == b.effects.back().form;
+}
+
+// Nonlinearities inside the body differ in their shape alone, and their fits often end in a local
+// minimum.  Each is tried again from the linear parts of the best of them, and from those of
+// another that this has made the best.  The first may have hidden poles of a body whose order was
+// reduced.
+void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals& signals,
+                     const Blocks& blocks, int order, const SearchOptions& options,
+                     const ForEach& for_each) {
+  constexpr double kWorthPoles = 0.99;  // of the held-out error
+  constexpr double kGains = 0.97;       // of the present one
+  constexpr int kPasses = 2;
+  const auto inside = [](const Trial& trial) { return ends_inside_body(trial.model); };
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const auto best = std::ranges::find_if(all, inside);
+    if (best == all.end() || best->rmse > kGains * current_rmse) return;
+    while (!passes_through_body(best->model) &&
+           static_cast<int>(best->model.body.order()) < order) {
+      Trial richer =
+          judged_trial(lifted(best->model), signals, blocks, options.fit_iterations, true);
+      if (!(richer.rmse < kWorthPoles * best->rmse)) break;
+      *best = std::move(richer);
+    }
+    const Model from = best->model;
+    for_each(all.size(), [&](std::size_t i) {
+      if (!inside(all[i]) || &all[i] == &*best) return;
+      const auto start = with_shape_of(all[i].model.effects.back(), from, signals);
+      if (!start) return;
+      Trial other = judged_trial(*start, signals, blocks, options.screening_iterations, false);
+      if (!(other.rmse < std::min(kNear * best->rmse, all[i].rmse))) return;
+      other = judged_trial(std::move(other.model), signals, blocks, options.fit_iterations, true);
+      if (other.rmse < all[i].rmse) all[i] = std::move(other);
+    });
+    std::ranges::stable_sort(all, by_rmse);
+    if (same_shape(std::ranges::find_if(all, inside)->model, from)) return;
+  }
+}
+
+}  // namespace
+
+bool passes_over_samples(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return effect_kind(effect.kind).stage(effect) == Stage::kWeight;
+}
+
+void start_afresh(Model& model, const Signals& signals, int order) {
+  constexpr double kWorthPoles = 0.98;  // of the squared error
+  std::vector<double> left = signals.output().values;
+  std::vector<std::vector<double>> inputs;
+  if (!without_effects(model, signals, inputs, left)) return;
+  FreeRun run;
+  double least = residual_of(model, signals, run).squaredNorm();
+  const auto own = static_cast<int>(model.body.order());
+  for (const int p : {own, order}) {
+    if (p > own && passes_through_body(model)) break;
+    Model other = model;
+    other.body = started_body(inputs, left, {}, signals, p);
+    if (p == 4) other.body = with_other_mode(other.body, inputs, left, signals);
+    const double square = residual_of(other, signals, run).squaredNorm();
+    if (run.finite && square < (p > own ? kWorthPoles : 1.0) * least) {
+      least = square;
+      model = std::move(other);
+    }
+    if (p == order) break;
+  }
+}
+
+namespace {
+
+constexpr std::size_t kFewest = 5;  // the order among them by a few steps is not that at the end
+
+// A term or a gain that the columns next to the model do not show: its fit would hardly gain more.
+bool is_hopeless(const Proposal& proposal) {
+  constexpr double kLeastGain = 0.0025;  // of the squared error; DG-17 asks for four times as much
+  if (proposal.body) return false;
+  const Stage stage = effect_kind(proposal.effect.kind).stage(proposal.effect);
+  return (stage == Stage::kTerm || stage == Stage::kGain) && proposal.gain < kLeastGain;
+}
+
+Trial not_fitted(Model model) {
+  Trial trial;
+  trial.fitted = false;
+  trial.rmse = std::numeric_limits<double>::infinity();
+  trial.added = model.effects.size() - 1;
+  trial.model = std::move(model);
+  return trial;
+}
+
+// To pass over samples explains nothing: only where no effect explains much.
+void drop_bursts(std::vector<Trial>& all, double current_rmse) {
+  constexpr double kExplainsMuch = 0.85;
+  const auto explains = std::ranges::find_if_not(all, passes_over_samples);
+  if (explains != all.end() && explains->rmse < kExplainsMuch * current_rmse) {
+    std::erase_if(all, passes_over_samples);
+  }
+}
+
+// Where nothing gains, a few are carried to the end all the same: some begin slowly.
+std::size_t near_the_best(const std::vector<Trial>& all, double current_rmse) {
+  constexpr double kGains = 0.985;
+  std::size_t near = 0;
+  while (near < all.size() && all[near].rmse < kNear * all.front().rmse &&
+         (near < kFewest || all[near].rmse < kGains * current_rmse)) {
+    ++near;
+  }
+  return near;
+}
+
+}  // namespace
+
+Screened screened_trials(const Model& current, double current_rmse, const Signals& signals,
+                         const RoundSettings& settings, Shapes shapes,
+                         std::vector<Proposal> known) {
+  const Screening screening(current, signals, settings.blocks, settings.impulse_response,
+                            std::move(known));
+  std::vector<const EffectKind*> kinds;
+  std::ranges::copy_if(effect_kinds(), std::back_inserter(kinds), [&](const EffectKind* kind) {
+    return kind->any_shape() == (shapes == Shapes::kAny);
+  });
+  std::vector<std::vector<Proposal>> of_kinds(kinds.size());
+  settings.for_each(kinds.size(),
+                    [&](std::size_t k) { of_kinds[k] = kinds[k]->proposed(screening); });
+  std::vector<Proposal> proposals;
+  for (auto& of_kind : of_kinds) std::ranges::move(of_kind, std::back_inserter(proposals));
+  std::vector<Trial> all(proposals.size());
+  settings.for_each(proposals.size(), [&](std::size_t i) {
+    Model model = current;
+    if (proposals[i].body) model.body = *proposals[i].body;
+    model.effects.push_back(proposals[i].effect);
+    all[i] = is_hopeless(proposals[i]) ? not_fitted(std::move(model))
+                                       : judged_trial(std::move(model), signals, settings.blocks,
+                                                      settings.options.screening_iterations, false);
+    all[i].own_body = proposals[i].body.has_value();
+  });
+  std::ranges::stable_sort(all, by_rmse);
+  const std::size_t near = near_the_best(all, current_rmse);
+  return {std::move(all), near};
+}
+
+void fit_first(Screened& screened, double current_rmse, const Signals& signals,
+               const RoundSettings& settings) {
+  auto& all = screened.trials;
+  const std::size_t first = std::min(screened.near, kFewest);
+  settings.for_each(first, [&](std::size_t i) {
+    const bool own_body = all[i].own_body;
+    start_afresh(all[i].model, signals, settings.order);
+    all[i] = judged_trial(std::move(all[i].model), signals, settings.blocks,
+                          settings.options.fit_iterations, false);
+    all[i].own_body = own_body;
+  });
+  std::ranges::stable_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(first), by_rmse);
+  drop_bursts(all, current_rmse);
+  screened.near = std::min(screened.near, all.size());
+  screened.first_fitted = true;
+}
+
+std::vector<Trial> finished_trials(Screened screened, double current_rmse, const Signals& signals,
+                                   const RoundSettings& settings) {
+  auto& all = screened.trials;
+  if (!screened.first_fitted) {
+    settings.for_each(std::min(screened.near, kFewest),
+                      [&](std::size_t i) { start_afresh(all[i].model, signals, settings.order); });
+  }
+  settings.for_each(screened.near, [&](std::size_t i) {
+    all[i] = judged_trial(std::move(all[i].model), signals, settings.blocks,
+                          settings.options.fit_iterations, true);
+  });
+  std::ranges::stable_sort(all, by_rmse);
+  exchange_shapes(all, current_rmse, signals, settings.blocks, settings.order, settings.options,
+                  settings.for_each);
+  drop_bursts(all, current_rmse);
+  return std::move(all);
+}
+
+std::vector<Proposal> with_own_bodies(const std::vector<Trial>& trials) {
+  std::vector<Proposal> proposals;
+  for (const Trial& trial : trials) {
+    if (!trial.own_body || !std::isfinite(trial.rmse)) continue;
+    proposals.push_back({trial.model.effects.back(), 0.0, trial.model.body});
+  }
+  return proposals;
+}
+
+void in_order(std::size_t count, const std::function<void(std::size_t)>& task) {
+  for (std::size_t i = 0; i < count; ++i) task(i);
+}
+
+}  // namespace stillhand::diagnosis

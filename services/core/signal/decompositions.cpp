@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/signal/decompositions.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace stillhand::signal {
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  return Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(a).solve(b);
+}
+
+Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  return Eigen::LDLT<Eigen::MatrixXd>(a).solve(b);
+}
+
+Eigen::MatrixXd upper_factor(const Eigen::MatrixXd& a) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(a);
+  const Eigen::Index rows = std::min(a.rows(), a.cols());
+  return qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>().toDenseMatrix();
+}
+
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& a) {
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
+}
+
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& a) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& a) { return a.eigenvalues(); }
+
+}  // namespace stillhand::signal

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
+#include "services/processes/human_operator/shell.hpp"
+
+int main(int argc, char** argv) {
+  using namespace stillhand;
+  bool with_pointer = false;
+  return runtime::run_service(
+      "human_operator", argc, argv,
+      [&](runtime::Service& service) {
+        human_operator::Shell shell(service, with_pointer);
+        shell.run();
+      },
+      [&](CLI::App& cli, runtime::ServiceOptions&) {
+        cli.add_flag("--pointer", with_pointer,
+                     "use a person's mouse instead of the simulated subject");
+      });
+}

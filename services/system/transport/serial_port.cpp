@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/system/transport/serial_port.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "services/core/contract/config_error.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& want) {
+  throw ConfigError("serial port " + path, why, want);
+}
+
+speed_t speed_of(const std::string& path, std::int64_t baud) {
+  constexpr std::array kSpeeds{std::pair{9600, B9600},     std::pair{19200, B19200},
+                               std::pair{38400, B38400},   std::pair{57600, B57600},
+                               std::pair{115200, B115200}, std::pair{230400, B230400},
+                               std::pair{460800, B460800}, std::pair{921600, B921600}};
+  for (const auto& [number, speed] : kSpeeds) {
+    if (number == baud) return static_cast<speed_t>(speed);
+  }
+  refuse(path, std::to_string(baud) + " Bd",
+         "one of 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600");
+}
+
+void make_raw(int descriptor, const std::string& path, speed_t speed) {
+  termios settings{};
+  if (tcgetattr(descriptor, &settings) != 0) refuse(path, "no terminal", "a serial port");
+  cfmakeraw(&settings);
+  cfsetispeed(&settings, speed);
+  cfsetospeed(&settings, speed);
+  settings.c_cflag |= CLOCAL | CREAD;
+  settings.c_cc[VMIN] =
+      1;  // nothing there reads as EAGAIN, and 0 means that the other side is gone
+  settings.c_cc[VTIME] = 0;
+  if (tcsetattr(descriptor, TCSANOW, &settings) != 0)
+    refuse(path, std::strerror(errno), "a serial port");
+}
+
+}  // namespace
+
+SerialPort::SerialPort(const std::string& path, std::int64_t baud) {
+  const speed_t speed = speed_of(path, baud);
+  descriptor_ = open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor_ < 0) {
+    refuse(path, std::strerror(errno), "a port that this user may read and write");
+  }
+  try {
+    // Two processes that command one drive would be two sources of force.
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      refuse(path, "a port that another process has", "a port for this session alone");
+    }
+    make_raw(descriptor_, path, speed);
+    ioctl(descriptor_, TIOCEXCL);
+    tcflush(descriptor_, TCIOFLUSH);
+  } catch (...) {
+    close(descriptor_);
+    throw;
+  }
+}
+
+SerialPort::~SerialPort() {
+  ioctl(descriptor_, TIOCNXCL);
+  close(descriptor_);
+}
+
+std::string_view SerialPort::read(std::span<char> into) noexcept {
+  const ssize_t count = ::read(descriptor_, into.data(), into.size());
+  if (count > 0) return {into.data(), static_cast<std::size_t>(count)};
+  if (count == 0 || (errno != EAGAIN && errno != EINTR)) gone_ = true;
+  return {};
+}
+
+bool SerialPort::write(std::string_view text) noexcept {
+  const ssize_t count = ::write(descriptor_, text.data(), text.size());
+  if (count < 0 && errno != EAGAIN && errno != EINTR) gone_ = true;
+  return count == static_cast<ssize_t>(text.size());
+}
+
+}  // namespace stillhand::runtime
