@@ -124,7 +124,7 @@ class DiagnoseTest(unittest.TestCase):
             with self.subTest(words[0]):
                 said = self.refused(*words)
                 self.assertIn("ms.csv, time", said)
-                self.assertIn("milliseconds", said)
+                self.assertIn("=t [ms]", said)  # the line that mends it
         run = stillhand("diagnose", path, "--most-effects", 0, "--map", "t [s]=t [ms]", "a_y=a_y", "f=f")
         self.assertEqual(run.returncode, 0, run.stderr)
 
