@@ -483,8 +483,21 @@ def cut_file(kind, name, right, make, share, words=MAP, needs=True):
 cut_file("A7", "WAV cut at two thirds", Right("cut off"), sound, 2 / 3, SOUND_MAP)
 cut_file("A7", "WAV cut at 30 s, its head of a pipe", Right(), lambda folder: piped(sound(folder)), 0.5, SOUND_MAP)
 cut_file("A7", "MCAP cut at 80 %", Right("lost at its end"), bag, 0.8, BAG_MAP)
-cut_file("A7", "CSV cut within a row", Right("cut off"), text, 0.6543)
-cut_file("A7", "CSV cut within its last number", Right("cut off"), text, 0.65431)
+def cut_row(folder, commas):
+    """The table up to the third character behind a comma of a row in its middle."""
+    path = text(folder)
+    content = path.read_text(encoding="utf-8")
+    at = content.index("\n", len(content) // 2)
+    for _ in range(commas):
+        at = content.index(",", at + 1)
+    path.write_text(content[:at + 3], encoding="utf-8")
+    return path
+
+
+# A row that ends within its last number is a whole row of many programs, which write no line end there.
+for name, commas, right in (("CSV cut within a row", 1, Right("cut off")),
+                            ("CSV cut within its last number", 2, Right())):
+    MEMBERS.append(Member("A7", name, lambda folder, commas=commas: (cut_row(folder, commas), MAP), right))
 
 
 def piped(path):
@@ -576,7 +589,7 @@ table("B9", "date and clock in two columns", Refused(("clock=t",)), words=[], he
       first=lambda t: stamp(t).date().isoformat() + "," + stamp(t).time().isoformat(), pasted=True)
 table("B9", "a clock of minutes and seconds", Right(), first=lambda t: f"00:{int(t // 60):02}:{t % 60:06.3f}")
 table("B9", "blocks of ten rows with one stamp", Refused(("--sample-rate 100",)),
-      first=lambda t: repr(numpy.floor(t * 10.0 + 1e-9) / 10.0))
+      first=lambda t: repr(float(numpy.floor(t * 10.0 + 1e-9) / 10.0)))
 table("B9", "stamps of whole seconds", Refused(("--sample-rate 100",)), first=lambda t: repr(int(t)))
 table("B9", "ms of whole numbers", Refused(("time=t [ms]",)), words=[], first=lambda t: repr(round(1e3 * t)),
       pasted=True)
