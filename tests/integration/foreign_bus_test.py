@@ -4,16 +4,14 @@
 The writers are programs of another project (foreign/plant.idl): one with Fast DDS, which describes its types, with a
 topic as ROS 2 writes it; one with Cyclone DDS. No program of Stillhand compiles their types.
 """
-import csv
 import json
-import os
 import pathlib
 import signal
 import subprocess
-import tempfile
 import unittest
 
 import lab_process
+from bus_case import LIMIT_S, Bus, stillhand
 from lab_process import BUILD, STILLHAND, next_domain
 
 IDL = pathlib.Path(__file__).resolve().parent / "foreign" / "plant.idl"
@@ -26,13 +24,7 @@ CYCLONE_URI = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface addre
                "<MaxAutoParticipantIndex>31</MaxAutoParticipantIndex><Peers><Peer Address='127.0.0.1'/></Peers>"
                "</Discovery></Domain></CycloneDDS>")
 COUNT = 60
-LIMIT_S = 60.0
 PATTERNS = ["--topics", "plant/*", "--topics", "rt/*"]
-
-
-def stillhand(*words):
-    return subprocess.run([str(STILLHAND), *map(str, words)], capture_output=True, text=True, check=False,
-                          timeout=LIMIT_S)
 
 
 def has_xcdr2():
@@ -41,33 +33,8 @@ def has_xcdr2():
     return "libfastrtps.so" not in libraries
 
 
-class ForeignBusTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def start(self, *words):
-        """A process that does not outlive the test; said() is its output, end(signal) its exit status."""
-        output = tempfile.TemporaryFile("w+")
-        process = subprocess.Popen([str(word) for word in words], stdin=subprocess.DEVNULL, stdout=output,
-                                   stderr=subprocess.STDOUT, env=os.environ | {"CYCLONEDDS_URI": CYCLONE_URI})
-
-        def said():
-            output.seek(0)
-            return output.read()
-
-        def end(number):
-            process.send_signal(number)
-            return process.wait(timeout=LIMIT_S)
-
-        def close():
-            process.kill()
-            process.wait()
-            output.close()
-        self.addCleanup(close)
-        process.said, process.end = said, end
-        return process
+class ForeignBusTest(Bus):
+    ENVIRONMENT = {"CYCLONEDDS_URI": CYCLONE_URI}
 
     def wait_for(self, what, process, condition):
         lab_process.wait_for(what, lambda: condition() or process.poll() is not None, LIMIT_S)
@@ -84,17 +51,6 @@ class ForeignBusTest(unittest.TestCase):
         status = recorder.end(signal.SIGINT)
         self.assertEqual(status, 0, recorder.said())
         return file, domain, writer, recorder.said()
-
-    def info(self, file):
-        told = stillhand("info", file, "--json", self.folder / "info.json")
-        self.assertEqual(told.returncode, 0, told.stderr)
-        return json.loads((self.folder / "info.json").read_text())
-
-    def rows(self, file, topic):
-        told = stillhand("export", file, "--csv", self.folder / "tables", "--topics", topic)
-        self.assertEqual(told.returncode, 0, told.stderr)
-        with open(self.folder / "tables" / (topic.replace("/", "_") + ".csv"), newline="", encoding="utf-8") as table:
-            return list(csv.DictReader(table))
 
     def assert_replayed(self, file, topics):
         """Recorded whole, and its replay recorded again: the same bytes in the same order."""

@@ -4,59 +4,23 @@
 What is recorded comes from publish_samples (four topics, one sample each millisecond), what is replayed from bus_load
 (ten topics load/0 to load/9, evenly). No session is needed.
 """
-import json
 import os
-import pathlib
 import pty
 import re
 import signal
 import subprocess
-import tempfile
 import time
-import unittest
 
 import lab_process
-from lab_process import BUILD, STILLHAND, next_domain
+from bus_case import LIMIT_S, Bus, stillhand, wait_for
+from lab_process import BUILD, STILLHAND
 
 LOAD = BUILD / "tests" / "bus_load"
 PUBLISH = BUILD / "tests" / "publish_samples"
-LIMIT_S = 60.0
 ANSWER = re.compile(r"(?P<at>[\d.]+) of (?P<length>[\d.]+) s, rate (?P<rate>[\d.e+-]+)(?P<flags>[^\d]*), (?P<count>\d+)")
 
 
-def stillhand(*words):
-    return subprocess.run([str(STILLHAND), *(str(word) for word in words)], capture_output=True, text=True, check=False,
-                          timeout=LIMIT_S)
-
-
-def wait_for(what, condition):
-    return lab_process.wait_for(what, condition, LIMIT_S)
-
-
-class Bus(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.domain = next_domain()
-
-    def start(self, *words, stdin=subprocess.DEVNULL):
-        """A process that does not outlive the test; its output is a file."""
-        output = tempfile.TemporaryFile("w+")
-        process = subprocess.Popen([str(word) for word in words], stdin=stdin, stdout=output, stderr=subprocess.STDOUT)
-
-        def end():
-            process.kill()
-            process.wait()
-            output.close()
-        self.addCleanup(end)
-
-        def said():
-            output.seek(0)
-            return output.read()
-        process.said = said
-        return process
-
+class Verbs(Bus):
     def verb(self, name, *words, **keywords):
         return self.start(STILLHAND, name, "--domain", self.domain, *words, **keywords)
 
@@ -68,29 +32,11 @@ class Bus(unittest.TestCase):
         self.assertEqual(answer.returncode, 0, answer.stderr)
         return answer.stdout
 
-    def interrupted(self, process):
-        process.send_signal(signal.SIGINT)
-        return process.wait(timeout=LIMIT_S)
-
-    def info(self, file):
-        told = stillhand("info", file, "--json", self.folder / "info.json")
-        self.assertEqual(told.returncode, 0, told.stderr)
-        return json.loads((self.folder / "info.json").read_text())
-
     def messages(self, file):
         return {topic["topic"]: topic["messages"] for topic in self.info(file)["topics"]}
 
-    def rows(self, file, topic):
-        """Table of one topic, [{title: text}]."""
-        tables = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
-        exported = stillhand("export", file, "--csv", tables, "--topics", topic)
-        self.assertEqual(exported.returncode, 0, exported.stderr)
-        lines = (tables / (topic.replace("/", "_") + ".csv")).read_text().splitlines()
-        titles = [title.split(" [")[0] for title in lines[0].split(",")]
-        return [dict(zip(titles, line.split(","))) for line in lines[1:]]
 
-
-class RefusedTest(Bus):
+class RefusedTest(Verbs):
     """Errors that a person can mend: one line, status 2, before anything is written or played."""
 
     def assert_refused(self, *words):
@@ -146,7 +92,7 @@ class RefusedTest(Bus):
         subprocess.run([str(LOAD), "--write", str(self.file), "1000", "2"], check=True)
 
 
-class RecordTest(Bus):
+class RecordTest(Verbs):
     def setUp(self):
         super().setUp()
         self.start(PUBLISH, "--domain", self.domain)
@@ -175,7 +121,7 @@ class RecordTest(Bus):
         self.assertIn("resume", resumed)
         recorder.wait(timeout=LIMIT_S)
         self.assertIn("messages passed over: paused", recorder.said())
-        ticks = [int(row["tick"]) for row in self.rows(file, "stillhand/sensed")]
+        ticks = [int(row["tick [-]"]) for row in self.rows(file, "stillhand/sensed")]
         steps = [later - earlier for earlier, later in zip(ticks, ticks[1:])]
         # The commands themselves take a while; the hole is at least what lay between the answers.
         self.assertGreaterEqual(max(steps), 1000)
@@ -205,7 +151,7 @@ class RecordTest(Bus):
         recorder = self.recorder("--out", file, "--window", 2)
         wait_for("a full window", lambda: self.counted("received") > 2 * 4000)
         self.obeyed("record", "trigger")
-        self.interrupted(recorder)
+        recorder.end(signal.SIGINT)
         info = self.info(file)
         cause = [entry["texts"]["cause"] for entry in info["metadata"] if entry["name"] == "stillhand.trigger"]
         self.assertEqual(cause, ["a command"])
@@ -219,11 +165,11 @@ class RecordTest(Bus):
         recorder = self.verb("record", "--topics", "stillhand/sensed", "--out", file, "--window", 2, "--trigger",
                              "stillhand/sensed.tick>4000")
         wait_for("the window in the file", lambda: file.exists() and "stillhand/sensed" in self.messages(file))
-        self.interrupted(recorder)
+        recorder.end(signal.SIGINT)
         info = self.info(file)
         causes = [entry["texts"]["cause"] for entry in info["metadata"] if entry["name"] == "stillhand.trigger"]
         self.assertEqual(causes, ["stillhand/sensed.tick>4000"])
-        ticks = [int(row["tick"]) for row in self.rows(file, "stillhand/sensed")]
+        ticks = [int(row["tick [-]"]) for row in self.rows(file, "stillhand/sensed")]
         # The sample that crosses it is in the window; a batch later the window is written.
         self.assertLessEqual(ticks[0], 4000)
         self.assertGreater(ticks[-1], 4000)
@@ -231,18 +177,18 @@ class RecordTest(Bus):
     def assert_parts(self, *words):
         recorder = self.recorder("--out", self.folder / "a.mcap", *words)
         wait_for("a third part", (self.folder / "a.0003.mcap").exists)
-        self.interrupted(recorder)
+        recorder.end(signal.SIGINT)
         parts = sorted(self.folder.glob("a*.mcap"), key=lambda path: (path.name != "a.mcap", path.name))
         ticks = []
         for part in parts:
             self.assertEqual(stillhand("verify", part).returncode, 0, part)
-            ticks += [int(row["tick"]) for row in self.rows(part, "stillhand/sensed")]
+            ticks += [int(row["tick [-]"]) for row in self.rows(part, "stillhand/sensed")]
         # Nothing falls between two files: each tick is there once, but for what the bus lost.
         self.assertEqual(ticks, sorted(set(ticks)))
-        told = [int(word) for line in recorder.said().splitlines() if line.startswith("stillhand/sensed")
+        counts = [int(word) for line in recorder.said().splitlines() if line.startswith("stillhand/sensed")
                 for word in line.split()[1:5]]
-        self.assertEqual(len(ticks), told[3])
-        self.assertEqual(ticks[-1] - ticks[0] + 1 - len(ticks), told[1])
+        self.assertEqual(len(ticks), counts[3])
+        self.assertEqual(ticks[-1] - ticks[0] + 1 - len(ticks), counts[1])
         return [self.info(part) for part in parts]
 
     def test_files_by_time_follow_one_another_without_a_gap(self):
@@ -257,7 +203,7 @@ class RecordTest(Bus):
             self.assertLess(info["bytes"], 300_000)
 
 
-class ReplayTest(Bus):
+class ReplayTest(Verbs):
     LENGTH_S = 20
     RATE = 1000  # of ten topics together
 
@@ -307,8 +253,8 @@ class ReplayTest(Bus):
         wait_for("three rounds", lambda: int(self.answer("play")["count"]) > 300)
         self.obeyed("replay", "stop")
         replay.wait(timeout=LIMIT_S)
-        self.interrupted(recorder)
-        ticks = [int(row["tick"]) for row in self.rows(heard, "load/0")]
+        recorder.end(signal.SIGINT)
+        ticks = [int(row["tick [-]"]) for row in self.rows(heard, "load/0")]
         # Tick n is n/100 s behind the start: the stretch holds 400 to 500, both ends included.
         self.assertEqual((min(ticks), max(ticks)), (400, 500))
         self.assertGreaterEqual(ticks.count(450), 2)
@@ -320,9 +266,9 @@ class ReplayTest(Bus):
                            "--block", "load/4", "--remap", "load/3=other/three", "--rate", 10, "--wait-for",
                            "other/three")
         self.assertEqual(replay.wait(timeout=LIMIT_S), 0, replay.said())
-        self.interrupted(recorder)
+        recorder.end(signal.SIGINT)
         self.assertEqual(self.messages(heard), {"other/three": self.RATE * self.LENGTH_S // 10})
-        ticks = [int(row["tick"]) for row in self.rows(heard, "other/three")]
+        ticks = [int(row["tick [-]"]) for row in self.rows(heard, "other/three")]
         self.assertEqual(ticks, list(range(len(ticks))))
 
     def test_readers_that_are_there_hear_the_first_message_and_nobody_is_said(self):
@@ -336,7 +282,7 @@ class ReplayTest(Bus):
         wait_for("the recorder", lambda: self.remote("record", "resume").returncode == 0)
         replay = self.verb("replay", *words)
         self.assertEqual(replay.wait(timeout=LIMIT_S), 0, replay.said())
-        self.interrupted(recorder)
+        recorder.end(signal.SIGINT)
         self.assertEqual(self.messages(heard), {"load/3": count})
         self.assertNotIn("no reader", replay.said())
 
@@ -358,23 +304,24 @@ class ReplayTest(Bus):
 
     def test_keys_of_a_terminal_control_it(self):
         # The status that the replay publishes ten times a second, as a recording that grows.
-        told = self.folder / "told.mcap"
-        self.verb("record", "--out", told, "--topics", "stillhand/replay_status", "--flush-ms", 20)
+        statuses = self.folder / "statuses.mcap"
+        self.verb("record", "--out", statuses, "--topics", "stillhand/replay_status", "--flush-ms", 20)
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
         replay = self.verb("replay", self.file, "--paused", stdin=theirs)
         os.close(theirs)
 
         def state():
-            if "stillhand/replay_status" not in self.messages(told):
+            if "stillhand/replay_status" not in self.messages(statuses):
                 return None
-            newest = self.rows(told, "stillhand/replay_status")[-1]
+            newest = {title.split(" [")[0]: cell
+                      for title, cell in self.rows(statuses, "stillhand/replay_status")[-1].items()}
             return {name: float(newest[name]) for name in ("paused", "position_s", "rate", "looping", "released")}
 
         def after(key, condition):
             os.write(ours, key)
             wait_for(f"effect of {key}", lambda: condition(state()))
-        wait_for("its status", lambda: told.exists() and state())
+        wait_for("its status", lambda: statuses.exists() and state())
         after(b"s", lambda now: now["released"] == 1)
         after(b"+", lambda now: now["rate"] > 1)
         after(b"-", lambda now: now["rate"] == 1)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// plant_cyclone DOMAIN [plain]: the same with Cyclone DDS: one type with a key in plain CDR, one that may grow, in
-// XCDR 2, for which "plain" waits for no reader.
+// plant_cyclone DOMAIN [plain]: the same with Cyclone DDS: one type with a key in plain CDR, one
+// that may grow, in XCDR 2, for which "plain" waits for no reader.
 #include <dds/dds.h>
 #include <signal.h>
 #include <stdbool.h>
@@ -27,7 +27,8 @@ static dds_entity_t good(dds_entity_t result, const char* what) {
 
 static bool has_reader(dds_entity_t writer) {
   dds_publication_matched_status_t status;
-  return dds_get_publication_matched_status(writer, &status) == DDS_RETCODE_OK && status.current_count > 0;
+  return dds_get_publication_matched_status(writer, &status) == DDS_RETCODE_OK &&
+         status.current_count > 0;
 }
 
 int main(int argc, char** argv) {
@@ -39,24 +40,36 @@ int main(int argc, char** argv) {
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(10));
   dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
   dds_qset_deadline(qos, DDS_SECS(100));
-  const dds_entity_t states = good(
-      dds_create_writer(participant,
-                        good(dds_create_topic(participant, &plant_State_desc, "plant/state", NULL, NULL), "state"), qos,
-                        NULL),
-      "writer");
-  const dds_entity_t growing = good(
-      dds_create_writer(
-          participant, good(dds_create_topic(participant, &plant_Growing_desc, "plant/growing", NULL, NULL), "growing"),
-          qos, NULL),
-      "writer");
+  const dds_entity_t states =
+      good(dds_create_writer(
+               participant,
+               good(dds_create_topic(participant, &plant_State_desc, "plant/state", NULL, NULL),
+                    "state"),
+               qos, NULL),
+           "writer");
+  const dds_entity_t growing =
+      good(dds_create_writer(
+               participant,
+               good(dds_create_topic(participant, &plant_Growing_desc, "plant/growing", NULL, NULL),
+                    "growing"),
+               qos, NULL),
+           "writer");
   dds_delete_qos(qos);
-  while (!stop && !(has_reader(states) && (argc > 2 || has_reader(growing)))) dds_sleepfor(DDS_MSECS(10));
+  const dds_time_t limit = dds_time() + DDS_SECS(60);
+  while (!stop && !(has_reader(states) && (argc > 2 || has_reader(growing)))) {
+    if (dds_time() > limit) return 1;
+    dds_sleepfor(DDS_MSECS(10));
+  }
   plant_Joint joints[3] = {{1.0, {1, 2, 3}}, {2.0, {4, 5, 6}}, {3.0, {7, 8, 9}}};
   double gains[2] = {0.25, 0.0};
   for (int i = 0; i < kCount && !stop; ++i) {
     gains[1] = -i;
-    plant_State state = {
-        .arm = (uint32_t)i % 3, .tick = i, .mode = plant_MOVING, .joint = {0.5 * i, {1, 2, 3}}, .name = "arm", .ready = true};
+    plant_State state = {.arm = (uint32_t)i % 3,
+                         .tick = i,
+                         .mode = plant_MOVING,
+                         .joint = {0.5 * i, {1, 2, 3}},
+                         .name = "arm",
+                         .ready = true};
     state.others._length = (uint32_t)i % 4;
     state.others._buffer = joints;
     state.gains._length = 2;

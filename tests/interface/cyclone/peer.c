@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// cyclone_peer DOMAIN: a program of another DDS (Cyclone), with types that idlc made from idl/control_loop.idl.
-// Until SIGTERM it writes stillhand/motor_command at 1 kHz and reads stillhand/platform_command; tells on stdout when it
-// runs, what came first, and how much came in all.
+// cyclone_peer DOMAIN: a program of another DDS (Cyclone), with types that idlc made from
+// idl/control_loop.idl. Until SIGTERM it writes stillhand/motor_command at 1 kHz and reads
+// stillhand/platform_command; tells on stdout when it runs, what came first, and how much came in
+// all.
 #include <dds/dds.h>
 #include <inttypes.h>
 #include <signal.h>
@@ -41,13 +42,17 @@ int main(int argc, char** argv) {
       good(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
   dds_qos_t* qos = stream_1khz();
   const dds_entity_t command_topic =
-      good(dds_create_topic(participant, &stillhand_msgs_MotorCommand_desc, "stillhand/motor_command", NULL, NULL),
+      good(dds_create_topic(participant, &stillhand_msgs_MotorCommand_desc,
+                            "stillhand/motor_command", NULL, NULL),
            "motor_command");
-  const dds_entity_t platform_topic = good(
-      dds_create_topic(participant, &stillhand_msgs_PlatformCommand_desc, "stillhand/platform_command", NULL, NULL),
-      "platform_command");
-  const dds_entity_t writer = good(dds_create_writer(participant, command_topic, qos, NULL), "writer");
-  const dds_entity_t reader = good(dds_create_reader(participant, platform_topic, qos, NULL), "reader");
+  const dds_entity_t platform_topic =
+      good(dds_create_topic(participant, &stillhand_msgs_PlatformCommand_desc,
+                            "stillhand/platform_command", NULL, NULL),
+           "platform_command");
+  const dds_entity_t writer =
+      good(dds_create_writer(participant, command_topic, qos, NULL), "writer");
+  const dds_entity_t reader =
+      good(dds_create_reader(participant, platform_topic, qos, NULL), "reader");
   dds_delete_qos(qos);
 
   stillhand_msgs_MotorCommand command = {.rig = 1,
@@ -75,9 +80,9 @@ int main(int argc, char** argv) {
     for (int32_t i = 0; i < count; ++i) {
       if (!infos[i].valid_data || ++received > 1) continue;
       const stillhand_msgs_PlatformCommand* first = samples[i];
-      printf("first %" PRIu32 " %" PRId64 " %" PRId64 " %g %g %g %" PRId32 " %" PRIu32 "\n", first->rig, first->tick,
-             first->stamp_ns, first->position_m, first->velocity_m_s, first->acceleration_m_s2, first->trial,
-             first->flags);
+      printf("first %" PRIu32 " %" PRId64 " %" PRId64 " %g %g %g %" PRId32 " %" PRIu32 "\n",
+             first->rig, first->tick, first->stamp_ns, first->position_m, first->velocity_m_s,
+             first->acceleration_m_s2, first->trial, first->flags);
       fflush(stdout);
     }
     if (count > 0) dds_return_loan(reader, samples, count);
