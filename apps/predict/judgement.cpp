@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -30,9 +31,15 @@ double square_about(const std::vector<double>& x, double level) {
   return sum;
 }
 
-Judged judged_against(const std::vector<double>& measured, std::vector<double> predicted) {
-  std::vector<double> residual(measured.size());
-  for (std::size_t n = 0; n < residual.size(); ++n) residual[n] = measured[n] - predicted[n];
+Judged judged_against(const std::vector<double>& all, const std::vector<bool>& given,
+                      std::vector<double> predicted) {
+  std::vector<double> measured;
+  std::vector<double> residual;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (given[n]) continue;
+    measured.push_back(all[n]);
+    residual.push_back(all[n] - predicted[n]);
+  }
   const double square = square_about(residual, 0.0);
   const double whole = square_about(measured, mean_of(measured));
   const double not_known = std::numeric_limits<double>::quiet_NaN();
@@ -73,10 +80,11 @@ std::string line_of(const char* name, const Score& score, const std::string& uni
 
 std::optional<Judgement> judged(Prediction& prediction,
                                 const std::optional<diagnosis::Model>& linear,
-                                const diagnosis::Measurement& measurement) {
+                                const diagnosis::Measurement& measurement,
+                                std::size_t start_samples) {
   const recording::Column& model = prediction.table.columns.front();
   const diagnosis::Channel* output = measurement.find(prediction.output);
-  if (output == nullptr || prediction.table.time_s.empty()) return {};
+  if (output == nullptr || std::ranges::all_of(prediction.given, std::identity())) return {};
   if (output->unit != model.unit) {
     prediction.notes.push_back("not judged: the model predicts " + output->name + " in " +
                                model.unit + ", and the recording holds it in " + output->unit);
@@ -87,11 +95,11 @@ std::optional<Judgement> judged(Prediction& prediction,
   judgement.rate_hz = measurement.rate_hz;
   judgement.measured = {output->name, output->unit,
                         at_rows(judgement.time_s, *output, measurement)};
-  judgement.carried = judged_against(judgement.measured.values, model.values);
+  judgement.carried = judged_against(judgement.measured.values, prediction.given, model.values);
   if (linear) {
-    Prediction without = predict(diagnosis::carried_as_it_is(*linear), measurement);
-    judgement.linear =
-        judged_against(judgement.measured.values, std::move(without.table.columns.front().values));
+    Prediction without = predict(diagnosis::carried_as_it_is(*linear), measurement, start_samples);
+    judgement.linear = judged_against(judgement.measured.values, prediction.given,
+                                      std::move(without.table.columns.front().values));
   }
   return judgement;
 }

@@ -13,7 +13,7 @@
 /// How right a prediction is, where the recording holds the output.
 namespace stillhand::predict {
 
-/// Over the rows r = measured - predicted, y = measured:
+/// Over the rows that did not give the start, r = measured - predicted, y = measured:
 ///
 ///   RMSE = sqrt(mean r^2),  VAF = 100 (1 - var r / var y),
 ///   fit = 100 (1 - |r| / |y - mean y|)
@@ -42,11 +42,13 @@ struct Judgement {
 
 /// @param prediction  of the carried model over the measurement; its notes may grow
 /// @param linear      the model without any effect, if there is one
+/// @param start_samples  as in predict()
 /// @return none where the measurement does not hold the output, or in another unit, which a note
 /// of the prediction says
 std::optional<Judgement> judged(Prediction& prediction,
                                 const std::optional<diagnosis::Model>& linear,
-                                const diagnosis::Measurement& measurement);
+                                const diagnosis::Measurement& measurement,
+                                std::size_t start_samples = 0);
 
 /// A line a model.
 std::string judgement_table(const Judgement& judgement);

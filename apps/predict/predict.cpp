@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "apps/predict/start_state.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
@@ -120,34 +121,113 @@ void add_notes(const diagnosis::CarriedModel& carried, Prediction& prediction) {
   }
 }
 
-}  // namespace
+struct Prepared {
+  const diagnosis::Model& model;
+  Measurement whole;    // with the output, even if it is not known
+  std::size_t factor;   // rows a sample of the model
+  Measurement working;  // at the model's rate
+};
 
-Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& measurement) {
-  const diagnosis::Model& model = carried.model;
-  Measurement whole = measurement;
+Prepared prepared(const diagnosis::Model& model, const Measurement& measurement) {
+  Prepared made{model, measurement, 1, {}};
+  Measurement& whole = made.whole;
   if (whole.find(model.output) == nullptr) {
     whole.channels.push_back(
         {model.output, model.output_unit, std::vector<double>(whole.size(), 0.0)});
   }
-  const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);
-  const Measurement working = factor == 1 ? whole : diagnosis::decimated(whole, factor);
-  if (working.size() == 0) {
+  made.factor = diagnosis::rate_factor(whole, model.rate_hz);
+  made.working = made.factor == 1 ? whole : diagnosis::decimated(whole, made.factor);
+  if (made.working.size() == 0) {
     throw ConfigError(whole.source, "no stretch as long as one sample of the model",
-                      std::to_string(factor) + " samples or more without a gap");
+                      std::to_string(made.factor) + " samples or more without a gap");
   }
-  const diagnosis::Signals measured(working, model.inputs, model.output);
-  const diagnosis::Signals signals = measured.with_pasts();
-  diagnosis::FreeRun run;
+  return made;
+}
+
+diagnosis::FreeRun run_of(const Prepared& made, const diagnosis::Signals& signals) {
   try {
-    run = diagnosis::free_run(model, signals, false);
+    diagnosis::FreeRun run = diagnosis::free_run(made.model, signals, false);
+    if (run.finite) return run;
   } catch (const std::out_of_range&) {
     throw ConfigError("model", "an effect without all of its channels, parameters or coefficients",
                       "a model as `stillhand diagnose --save` writes");
   }
-  if (!run.finite) {
-    throw ConfigError(whole.source, "inputs for which the model's output is not finite",
-                      "inputs like those that the model was fitted to");
+  throw ConfigError(made.whole.source, "inputs for which the model's output is not finite",
+                    "inputs like those that the model was fitted to");
+}
+
+// The signals with a start state at each stretch.
+diagnosis::Signals started(const diagnosis::Signals& signals, const StartStates& states) {
+  std::vector<double> e(signals.size(), 0.0);
+  for (std::size_t s = 0; s < signals.stretches().size(); ++s) {
+    const diagnosis::Stretch& stretch = signals.stretches()[s];
+    const std::size_t count =
+        std::min(stretch.end - stretch.first, static_cast<std::size_t>(states.rows()));
+    for (std::size_t i = 0; i < count; ++i) {
+      e[stretch.first + i] = states(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(s));
+    }
   }
+  return signals.with_start(std::move(e));
+}
+
+// The first samples of each stretch of the recording that has a stretch of the model.
+std::vector<std::vector<std::size_t>> given_rows(const Prepared& made, std::size_t samples) {
+  std::vector<std::vector<std::size_t>> rows;
+  for (const diagnosis::Stretch& stretch : made.whole.stretches) {
+    if (stretch.end - stretch.first < made.factor) continue;
+    rows.emplace_back();
+    for (std::size_t n = stretch.first; n < std::min(stretch.end, stretch.first + samples); ++n) {
+      if (made.whole.weight[n] > 0.0) rows.back().push_back(n);
+    }
+  }
+  return rows;
+}
+
+// Eq. DG-82.
+diagnosis::Signals started_from_output(const Prepared& made, const diagnosis::Signals& signals,
+                                       const std::vector<std::vector<std::size_t>>& rows) {
+  std::vector<std::vector<double>> inputs;
+  for (const diagnosis::Signal& input : signals.inputs()) inputs.push_back(input.values);
+  const diagnosis::Body& body = made.model.body;
+  const auto order = static_cast<Eigen::Index>(body.order());
+  const StartStates rest = StartStates::Zero(order, static_cast<Eigen::Index>(rows.size()));
+  const std::vector<double> output = run_of(made, started(signals, rest)).body;
+  const Answer answer = [&](const StartStates& states) {
+    return spread_out(run_of(made, started(signals, states)).prediction, made.working, made.whole,
+                      made.factor);
+  };
+  return started(signals, most_likely_start(made.whole.find(made.model.output)->values, rows,
+                                            state_spread(body, inputs, output, signals.stretches()),
+                                            made.model.heldout_rmse, answer));
+}
+
+}  // namespace
+
+Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& measurement,
+                   std::size_t start_samples) {
+  const Prepared made = prepared(carried.model, measurement);
+  const diagnosis::Model& model = carried.model;
+  const diagnosis::Signals measured(made.working, model.inputs, model.output);
+  diagnosis::Signals signals = measured.with_pasts();
+  std::vector<bool> given(made.whole.size(), false);
+  if (start_samples > 0) {
+    const diagnosis::Channel* output = measurement.find(model.output);
+    if (output == nullptr || output->unit != model.output_unit) {
+      throw ConfigError("--start-from-output",
+                        "a recording without " + model.output + " [" + model.output_unit + "]",
+                        "one that holds the output of the model");
+    }
+    if (!(model.heldout_rmse > 0.0)) {
+      throw ConfigError("--start-from-output", "a model whose error is not known",
+                        "one that `stillhand diagnose --save` of this version wrote");
+    }
+    const auto rows = given_rows(made, start_samples);
+    for (const auto& stretch : rows) {
+      for (const std::size_t n : stretch) given[n] = true;
+    }
+    signals = started_from_output(made, measured, rows);
+  }
+  const diagnosis::FreeRun run = run_of(made, signals);
   Prediction prediction;
   prediction.output = model.output;
   prediction.notes = measurement.notes;
@@ -155,17 +235,20 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
   add_notes(carried, prediction);
   add_ranges(diagnosis::left_ranges(model, carried.inputs, signals, run), prediction);
   add_bands(carried.bands, measured, prediction);
-  const auto values = spread_out(measured.without_pasts(run.prediction), working, whole, factor);
-  const std::vector<double> time_s = whole.time_s();
+  const auto values =
+      spread_out(start_samples > 0 ? run.prediction : measured.without_pasts(run.prediction),
+                 made.working, made.whole, made.factor);
+  const std::vector<double> time_s = made.whole.time_s();
   recording::Column column{model.output + "_model", model.output_unit, {}};
   std::size_t left_out = 0;
-  for (std::size_t n = 0; n < whole.size(); ++n) {
-    if (whole.weight[n] <= 0.0) continue;
+  for (std::size_t n = 0; n < made.whole.size(); ++n) {
+    if (made.whole.weight[n] <= 0.0) continue;
     if (std::isnan(values[n])) {
       ++left_out;
       continue;
     }
     prediction.table.time_s.push_back(time_s[n]);
+    prediction.given.push_back(given[n]);
     column.values.push_back(values[n]);
   }
   if (left_out > 0) {

@@ -16,15 +16,18 @@ struct Prediction {
   std::string output;              ///< the channel that is predicted
   std::vector<std::string> notes;  ///< effects left out, ranges left: one clause each
   std::vector<diagnosis::SampleFault> screening = {};
+  std::vector<bool> given = {};  ///< [rows] those that gave the start; no score counts them
 };
 
 /// From the inputs alone; every stretch from the steady state of its first second (DG-54), every
 /// effect held at the edges of the range in which it was seen (DG-56).  Of a model without ranges,
 /// effects that the inputs do not determine (a tone, a drift, a burst) are left out, and a changing
 /// gain is taken at 1.
-/// @throws stillhand::ConfigError when a channel is missing, or the rate is neither the model's nor
-///         a whole multiple of it.
+/// @param start_samples  rows at the start of each stretch whose measured output gives the body's
+///                       state there, Eq. DG-82; 0: from the inputs alone
+/// @throws stillhand::ConfigError when a channel is missing, the rate is neither the model's nor a
+///         whole multiple of it, or the start needs an output that is not there.
 Prediction predict(const diagnosis::CarriedModel& carried,
-                   const diagnosis::Measurement& measurement);
+                   const diagnosis::Measurement& measurement, std::size_t start_samples = 0);
 
 }  // namespace stillhand::predict

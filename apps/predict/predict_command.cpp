@@ -29,6 +29,7 @@ struct Arguments {
   std::filesystem::path out;
   std::filesystem::path json;
   std::filesystem::path picture;
+  std::size_t start_samples = 0;
 };
 
 // The model file, and what predicts from it.
@@ -77,8 +78,9 @@ int run(const Arguments& arguments) {
   measurement::ReadOptions read = arguments.read;
   read.channels = {models.carried.model.inputs, models.carried.model.output};
   const diagnosis::Measurement measured = measurement::read_measurement(arguments.recording, read);
-  Prediction prediction = predict(models.carried, measured);
-  const std::optional<Judgement> judgement = judged(prediction, models.linear, measured);
+  Prediction prediction = predict(models.carried, measured, arguments.start_samples);
+  const std::optional<Judgement> judgement =
+      judged(prediction, models.linear, measured, arguments.start_samples);
   if (files.wants("--json")) {
     files.set("--json", judgement_json(prediction, judgement, models.origin));
   }
@@ -121,6 +123,10 @@ void add_predict_command(CLI::App& cli, int& status) {
                    "CSV file of the prediction, with the measured output if REC has it")
       ->required()
       ->check(settings::check_name);
+  verb->add_option("--start-from-output", arguments->start_samples,
+                   "rows at the start of REC whose measured output gives the model's state there; "
+                   "the scores leave them out [0: the state comes from the inputs]")
+      ->check(CLI::Range(1, 1000000));
   verb->add_option("--json", arguments->json,
                    "file for RMSE, VAF and fit of the linear and the carried model; - is standard "
                    "output, and the text then goes to standard error")

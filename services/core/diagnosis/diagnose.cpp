@@ -247,6 +247,8 @@ void add_carried(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
     }
   }
   diagnosis.carried_error = held_out_error(held_out(carried.model, signals, blocks), variance);
+  diagnosis.carried.model.heldout_rmse = diagnosis.carried_error.rmse;
+  diagnosis.baseline.model.heldout_rmse = diagnosis.baseline_error.rmse;
 }
 
 void add_sizes(Diagnosis& diagnosis, const Signals& signals) {

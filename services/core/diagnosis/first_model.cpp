@@ -53,11 +53,11 @@ Baseline chosen_baseline(const Signals& signals, const Blocks& blocks,
   return arx;
 }
 
-// A body that rings for long, where the bound of its modes holds back the one that was fitted, Eq.
-// DG-66.
+// A body that rings or holds a level for long, where the bound of its poles holds back the one that
+// was fitted, Eq. DG-66.
 void allow_slow_poles(Diagnosis& diagnosis, Signals& signals, const Blocks& blocks) {
   const Body& body = diagnosis.baseline.model.body;
-  if (body.order() == 0 || !rings_near_bound(body)) return;
+  if (body.order() == 0 || !is_near_bound(body)) return;
   const Signals slow = signals.with_slow_poles();
   Baseline other = fit_baseline(slow, blocks, diagnosis.options.order);
   const double before = held_out(diagnosis.baseline.model, signals, blocks).rmse();
@@ -65,7 +65,7 @@ void allow_slow_poles(Diagnosis& diagnosis, Signals& signals, const Blocks& bloc
   diagnosis.baseline = std::move(other);
   signals = slow;
   diagnosis.notes.emplace_back(
-      "the body rings for long: its modes may decay within half of the recording");
+      "the body is slow: a mode of it may ring for half of the recording, and a level stays");
 }
 
 }  // namespace

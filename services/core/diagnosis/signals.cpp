@@ -234,6 +234,12 @@ Signals Signals::with_slow_poles() const {
   return other;
 }
 
+Signals Signals::with_start(std::vector<double> state) const {
+  Signals other = *this;
+  other.start_ = std::move(state);
+  return other;
+}
+
 Signals Signals::restarted(const std::vector<std::size_t>& at) const {
   Signals other = *this;
   other.stretches_.clear();

@@ -64,6 +64,10 @@ class Signals {
   /// The same signals for bodies that ring for long, Eq. DG-66.
   [[nodiscard]] Signals with_slow_poles() const;
   [[nodiscard]] bool slow_poles() const noexcept { return slow_poles_; }
+  /// The same signals, a body over them in this state before a stretch, Eq. DG-82.
+  /// @param state  e, one a sample, that A y_b = B u has on its right, [unit of the output]
+  [[nodiscard]] Signals with_start(std::vector<double> state) const;
+  [[nodiscard]] const std::vector<double>& start() const noexcept { return start_; }
   /// The same signals, a stretch beginning at each of these samples too.
   [[nodiscard]] Signals restarted(const std::vector<std::size_t>& at) const;
   /// The same signals, each stretch with a past of up to 10 s, Eq. DG-60: its own beginning in
@@ -107,6 +111,7 @@ class Signals {
   std::vector<Stretch> stretches_;
   std::vector<double> weight_;
   std::vector<double> whitening_;
+  std::vector<double> start_;  ///< empty: the steady start of Eq. DG-54
   std::vector<double> time_s_;
   Signal output_;
   std::vector<Signal> inputs_;

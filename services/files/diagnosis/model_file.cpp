@@ -82,11 +82,9 @@ Json json_of(const CarriedModel& carried) {
                         {"channels", each.effect.channels},
                         {"why", each.why}});
   }
-  return {{"body", json_of(carried.model.body)},
-          {"effects", json_of(carried.model.effects)},
-          {"inputs", json_of(carried.inputs)},
-          {"bands", json_of(carried.bands)},
-          {"left_out", left_out},
+  return {{"body", json_of(carried.model.body)},       {"heldout_rmse", carried.model.heldout_rmse},
+          {"effects", json_of(carried.model.effects)}, {"inputs", json_of(carried.inputs)},
+          {"bands", json_of(carried.bands)},           {"left_out", left_out},
           {"stability", name_of(carried.stability)}};
 }
 
@@ -231,6 +229,14 @@ Body body_of(const Entry& entry) {
   return body;
 }
 
+// Since 2026-11-27.
+double heldout_rmse_of(const Entry& entry) {
+  if (!entry.has("heldout_rmse")) return 0.0;
+  const double rmse = entry.at("heldout_rmse").number();
+  if (rmse < 0.0) entry.at("heldout_rmse").refuse("a number from 0 on");
+  return rmse;
+}
+
 // Body and effects.
 void read_parts(const Entry& entry, Model& model) {
   model.body = body_of(entry.at("body"));
@@ -265,7 +271,7 @@ std::string model_json(const Model& found, const CarriedModel& carried) {
 
 std::string model_json(const Model& found, const CarriedModel& carried, const Model& linear) {
   Json json = Json::parse(model_json(found, carried));
-  json["linear"] = {{"body", json_of(linear.body)}};
+  json["linear"] = {{"body", json_of(linear.body)}, {"heldout_rmse", linear.heldout_rmse}};
   std::string text = json.dump(2) + "\n";
   static_cast<void>(parse_linear_model(text, "model"));
   return text;
@@ -306,6 +312,7 @@ CarriedModel parse_carried_model(std::string_view json, const std::string& origi
     read_parts(from, model);
   };
   read_model(entry, carried.model);
+  carried.model.heldout_rmse = heldout_rmse_of(entry);
   carried.in_session = carried.model;
   if (top.has("in_session")) read_model(top.at("in_session"), carried.in_session);
   carried.inputs = ranges_of(entry.at("inputs"), kMostInputs);
@@ -335,6 +342,7 @@ std::optional<Model> parse_linear_model(std::string_view json, const std::string
   if (!top.has("linear")) return {};
   linear.effects.clear();
   linear.body = body_of(top.at("linear").at("body"));
+  linear.heldout_rmse = heldout_rmse_of(top.at("linear"));
   if (linear.body.numerators.size() != linear.inputs.size()) {
     top.at("linear").at("body").at("numerators").refuse("one an input");
   }

@@ -153,7 +153,15 @@ TEST(DiagnoseTest, ABodyThatRingsForLongIsNoEffect) {
   EXPECT_EQ(sut.verdict(), "nothing missing");
   // 5900 samples know the noise to 1 %; the start of the ringing is not fitted.
   EXPECT_NEAR(sut.baseline_error.rmse, 0.02, 0.002);
-  EXPECT_THAT(sut.notes, Contains(HasSubstr("rings for long")));
+  EXPECT_THAT(sut.notes, Contains(HasSubstr("the body is slow")));
+}
+
+// It decays within 400 s, and the record has 60 s: an integrator, as far as the record shows.
+TEST(DiagnoseTest, ABodyThatHoldsALevelIsNoEffect) {
+  const Diagnosis sut = diagnose(linear_recording({1.0, -std::exp(-0.01 / 400.0)}), options_of());
+  EXPECT_EQ(sut.verdict(), "nothing missing");
+  EXPECT_NEAR(sut.baseline_error.rmse, 0.02, 0.002);
+  EXPECT_THAT(sut.notes, Contains(HasSubstr("the body is slow")));
 }
 
 // A pole of 4 s, slower than all that the ride excites: no body within the bounds is right, and

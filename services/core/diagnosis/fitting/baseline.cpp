@@ -153,14 +153,19 @@ Model empty_model(const Signals& signals) {
   return model;
 }
 
+double linearised_rmse(const Model& model, const Signals& signals, const Blocks& blocks) {
+  const Linearisation line = linearised(model, signals);
+  return held_out_linearised(grams_of(line.jacobian, line.residual, line.run.weight, blocks),
+                             blocks)
+      .rmse();
+}
+
 // Whether the linearised cross-validation agrees with refitting: not where poles and zeros outside
 // the excited band are free to move far without a change within it.
 bool determined(const Model& model, const Signals& signals, const Blocks& blocks) {
   constexpr double kAgreement = 1.03;
-  const Linearisation line = linearised(model, signals);
-  const HeldOut linear =
-      held_out_linearised(grams_of(line.jacobian, line.residual, line.run.weight, blocks), blocks);
-  return linear.rmse() < kAgreement * held_out(model, signals, blocks).rmse();
+  return linearised_rmse(model, signals, blocks) <
+         kAgreement * held_out(model, signals, blocks).rmse();
 }
 
 }  // namespace
@@ -223,6 +228,33 @@ Body with_other_mode(const Body& fitted, const std::vector<std::vector<double>>&
   return best.body;
 }
 
+namespace {
+
+// Of one order, by DG-9 from the best start.
+void fit_order(const ImpulseResponse& impulse_response, const Signals& signals,
+               const Blocks& blocks, int order, Baseline& baseline) {
+  const auto inputs = input_values(signals);
+  const std::vector<double>& output = signals.output().values;
+  FitOptions options;
+  options.max_iterations = 40;
+  options.relative_tolerance = 1e-9;
+  baseline.model.body = started_body(inputs, output, impulse_response, signals, order);
+  baseline.rmse = fit(baseline.model, signals, blocks, options).rmse;
+  // Behind a filter the impulse response, which is fitted without it, is no bound.
+  const bool may_be_local =
+      signals.is_whitened() || baseline.rmse > kClearlyAbove * impulse_response.rmse;
+  if (order != 4 || !may_be_local) return;
+  Model other = baseline.model;
+  other.body = with_other_mode(other.body, inputs, output, signals);
+  const double rmse = fit(other, signals, blocks, options).rmse;
+  if (rmse < baseline.rmse) {
+    baseline.model = std::move(other);
+    baseline.rmse = rmse;
+  }
+}
+
+}  // namespace
+
 Baseline fit_baseline(const Signals& signals, const Blocks& blocks, int order) {
   if (order < 0 || order > kLargestOrder) {
     throw ConfigError("order", std::to_string(order), "0 to " + std::to_string(kLargestOrder));
@@ -230,39 +262,30 @@ Baseline fit_baseline(const Signals& signals, const Blocks& blocks, int order) {
   Baseline baseline;
   baseline.model = empty_model(signals);
   baseline.order = order;
-  const auto inputs = input_values(signals);
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
   baseline.impulse_response_rmse = impulse_response.rmse;
-  const std::vector<bool> all(signals.size(), true);
-  const Body paper = equation_error_fit(inputs, signals.output().values, all, signals,
-                                        static_cast<std::size_t>(order));
   Model work = baseline.model;
-  work.body = paper;
+  work.body = equation_error_fit(input_values(signals), signals.output().values,
+                                 std::vector<bool>(signals.size(), true), signals,
+                                 static_cast<std::size_t>(order));
   FreeRun run;
-  const auto rmse_of = [&](const Model& model) {
-    return std::sqrt(residual_of(model, signals, run).squaredNorm() /
-                     static_cast<double>(signals.size()));
-  };
-  baseline.equation_error_rmse = rmse_of(work);
-  for (int p = order;; --p) {
-    baseline.model.body =
-        started_body(inputs, signals.output().values, impulse_response, signals, p);
-    FitOptions options;
-    options.max_iterations = 40;
-    options.relative_tolerance = 1e-9;
-    baseline.rmse = fit(baseline.model, signals, blocks, options).rmse;
-    // Behind a filter the impulse response, which is fitted without it, is no bound.
-    if (p == 4 &&
-        (signals.is_whitened() || baseline.rmse > kClearlyAbove * impulse_response.rmse)) {
-      Model other = baseline.model;
-      other.body = with_other_mode(other.body, inputs, signals.output().values, signals);
-      const double rmse = fit(other, signals, blocks, options).rmse;
-      if (rmse < baseline.rmse) {
-        baseline.model = std::move(other);
-        baseline.rmse = rmse;
-      }
+  baseline.equation_error_rmse = std::sqrt(residual_of(work, signals, run).squaredNorm() /
+                                           static_cast<double>(signals.size()));
+  fit_order(impulse_response, signals, blocks, order, baseline);
+  if (!signals.slow_poles()) {
+    for (int p = order; p > 1 && !determined(baseline.model, signals, blocks); --p) {
+      fit_order(impulse_response, signals, blocks, p - 1, baseline);
     }
-    if (p <= 1 || determined(baseline.model, signals, blocks)) break;
+    return baseline;
+  }
+  Baseline lower = baseline;
+  double least = linearised_rmse(baseline.model, signals, blocks);
+  for (int p = order; p > 1; --p) {
+    fit_order(impulse_response, signals, blocks, p - 1, lower);
+    const double rmse = linearised_rmse(lower.model, signals, blocks);
+    if (!(rmse < least)) continue;
+    least = rmse;
+    baseline = lower;
   }
   return baseline;
 }

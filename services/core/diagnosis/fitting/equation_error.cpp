@@ -13,8 +13,9 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kUsualPart = 24.0;  // record over the longest ringing
-constexpr double kSlowPart = 2.0;    // likewise, Eq. DG-66
+constexpr double kUsualPart = 24.0;   // record over the longest ringing
+constexpr double kSlowPart = 2.0;     // likewise, Eq. DG-66
+constexpr double kIntegrator = 10.0;  // decay over the record: it holds what it was given
 
 // Least squares by Householder QR, columns scaled.
 Eigen::VectorXd least_squares(Eigen::MatrixXd columns, const Eigen::VectorXd& right) {
@@ -26,16 +27,16 @@ Eigen::VectorXd least_squares(Eigen::MatrixXd columns, const Eigen::VectorXd& ri
 
 // A mode rings for a twenty-fourth of the record at most; what the input does not excite is
 // forgotten within a sixtieth.  The free response of a slower pole would fit a tone or a drift.
-// Where a body rings for long, Eq. DG-66, a mode may do so for half of the record.
+// Where the output asks for it, Eq. DG-66, a mode may ring for half of the record, and a level may
+// stay for all of it.
 void bound_poles(const Signals& signals, Body& body) {
   const auto radius = [&](double longest_s) {
     return std::exp(-1.0 / (longest_s * signals.rate_hz()));
   };
   const double longest_s = signals.duration_s();
-  const double ringing_s =
-      std::max(2.0, longest_s / (signals.slow_poles() ? kSlowPart : kUsualPart));
-  body.largest_radius = radius(ringing_s);
-  body.slowest_radius = radius(std::max(1.0, longest_s / 60.0));
+  const bool slow = signals.slow_poles();
+  body.largest_radius = radius(std::max(2.0, longest_s / (slow ? kSlowPart : kUsualPart)));
+  body.slowest_radius = radius(slow ? kIntegrator * longest_s : std::max(1.0, longest_s / 60.0));
   body.least_turn = 2.0 * std::numbers::pi * signals.lowest_excited_hz() / signals.rate_hz();
   stabilise(body);
 }

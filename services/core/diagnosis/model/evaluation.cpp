@@ -42,9 +42,19 @@ std::vector<double> shaped_input(const Model& model, const Signals& signals, std
   return u;
 }
 
+// From rest at 0.
+Settled rested(std::vector<double> x, const Signals& signals) {
+  return {std::move(x), std::vector<double>(signals.stretches().size(), 0.0)};
+}
+
 Settled nothing(const Signals& signals) {
-  return {std::vector<double>(signals.size(), 0.0),
-          std::vector<double>(signals.stretches().size(), 0.0)};
+  return rested(std::vector<double>(signals.size(), 0.0), signals);
+}
+
+// What reaches the body: settled, or, where the state is known, from 0.
+Settled reaching(const Model& model, const Signals& signals, std::size_t k) {
+  std::vector<double> u = shaped_input(model, signals, k);
+  return signals.start().empty() ? settled(std::move(u), signals) : rested(std::move(u), signals);
 }
 
 void add_scaled(const std::vector<double>& x, double factor, std::vector<double>& sum) {
@@ -63,13 +73,24 @@ void add_differences(Settled x, std::span<const double> coefficients,
 void run_linear_body(const Model& model, const Signals& signals, ModelRun& run) {
   Settled body = nothing(signals);
   for (std::size_t k = 0; k < model.inputs.size(); ++k) {
-    run.filtered_inputs.push_back(through_poles(settled(shaped_input(model, signals, k), signals),
-                                                model.body.denominator, signals.stretches()));
+    run.filtered_inputs.push_back(
+        through_poles(reaching(model, signals, k), model.body.denominator, signals.stretches()));
     add_differences(run.filtered_inputs.back(), difference_basis(model.body.numerators[k]),
                     signals.stretches(), body);
   }
+  if (!signals.start().empty()) {
+    add_scaled(through_poles(signals.start(), model.body.denominator, signals.stretches()), 1.0,
+               body.values);
+  }
   run.free.body = std::move(body.values);
   run.body_before = std::move(body.before);
+}
+
+// A start state is one input more, which acts on the output as it is.
+Body with_start(Body body) {
+  body.numerators.emplace_back(body.order() + 1, 0.0);
+  body.numerators.back().front() = 1.0;
+  return body;
 }
 
 // Whose number changes what comes behind the body, not the body's output.
@@ -82,6 +103,7 @@ bool is_behind_body(const Effect& effect) {
 void run_bodies(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs,
                 const KnownRun* known) {
   std::vector<LoopCase> cases;
+  std::vector<Body> started(signals.start().empty() ? 0 : models.size());
   std::vector<std::size_t> with_loop;
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (known != nullptr && known->owners[i] &&
@@ -95,7 +117,12 @@ void run_bodies(std::span<const Model> models, const Signals& signals, std::span
       continue;
     }
     for (std::size_t k = 0; k < models[i].inputs.size(); ++k) {
-      runs[i].inputs.push_back(settled(shaped_input(models[i], signals, k), signals));
+      runs[i].inputs.push_back(reaching(models[i], signals, k));
+    }
+    if (!started.empty()) {
+      started[i] = with_start(models[i].body);
+      each.body = &started[i];
+      runs[i].inputs.push_back(rested(signals.start(), signals));
     }
     cases.push_back(std::move(each));
     with_loop.push_back(i);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 #include "services/core/diagnosis/fitting/modes.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
@@ -15,17 +16,18 @@ namespace {
 constexpr double kDecayed = 1e-3;
 constexpr double kLongestStart_s = 10.0;
 constexpr double kLongestShare = 0.25;  // of the record
-// A pole that decays within more than this has no fitted free response: it would be a tone's or a
-// drift's.
+// A mode that decays within more than this has no fitted free response: it would be a tone's.
 constexpr double kLongestDecay = 0.125;  // of the record
 
-// The poles that decay soon enough.
+// The poles that decay soon enough, and those that hold a level, Eq. DG-66.
 std::vector<double> quick_poles(const std::vector<double>& denominator, const Signals& signals) {
   const double largest =
       std::exp(-1.0 / (kLongestDecay * signals.duration_s() * signals.rate_hz()));
+  const double least_turn =
+      2.0 * std::numbers::pi * signals.lowest_excited_hz() / signals.rate_hz();
   std::vector<std::complex<double>> polynomial{1.0};
   for (const std::complex<double>& pole : signal::poles({1.0, denominator, denominator})) {
-    if (std::abs(pole) > largest) continue;
+    if (std::abs(std::arg(pole)) >= least_turn && std::abs(pole) > largest) continue;
     polynomial.emplace_back(0.0);
     for (std::size_t i = polynomial.size(); i-- > 1;) polynomial[i] -= pole * polynomial[i - 1];
   }
@@ -95,7 +97,8 @@ InitialStates::InitialStates(const std::vector<double>& denominator, const Signa
                              const std::vector<double>& weight) {
   const std::size_t poles = denominator.size() - 1;
   if (poles == 0) return;
-  const double longest_s = std::max(kLongestStart_s, kLongestShare * signals.duration_s());
+  const double share = signals.slow_poles() ? 1.0 : kLongestShare;
+  const double longest_s = std::max(kLongestStart_s, share * signals.duration_s());
   const auto longest = static_cast<std::size_t>(longest_s * signals.rate_hz());
   const auto window_of = [&](const Stretch& stretch) {
     return std::min(stretch.end - stretch.first, longest);

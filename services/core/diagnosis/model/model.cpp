@@ -16,8 +16,7 @@ std::vector<double> denominator_numbers(const std::vector<double>& denominator) 
 }
 
 double bound_on(const std::complex<double>& pole, const Body& body) {
-  if (std::abs(std::arg(pole)) >= body.least_turn) return body.largest_radius;
-  return std::min(body.slowest_radius, body.largest_radius);
+  return std::abs(std::arg(pole)) >= body.least_turn ? body.largest_radius : body.slowest_radius;
 }
 
 void append(const std::vector<double>& values, std::vector<double>& all) {
@@ -52,12 +51,11 @@ bool is_stable(const Body& body) {
   });
 }
 
-bool rings_near_bound(const Body& body) {
-  // A decay within half of the time: the radius squared.
-  const double near = body.largest_radius * body.largest_radius;
+bool is_near_bound(const Body& body) {
   const auto poles = signal::poles({1.0, body.denominator, body.denominator});
   return std::ranges::any_of(poles, [&](const std::complex<double>& pole) {
-    return std::abs(std::arg(pole)) >= body.least_turn && std::abs(pole) > near;
+    // A decay within half of the time: the radius squared.
+    return std::abs(pole) > std::pow(bound_on(pole, body), 2);
   });
 }
 

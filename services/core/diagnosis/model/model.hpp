@@ -31,6 +31,8 @@ struct Model {
   std::string output_unit;
   Body body;
   std::vector<Effect> effects;
+  double heldout_rmse = 0.0;  ///< [unit of the output] on samples that the fit has not seen; 0: not
+                              ///< known
 };
 
 /// Number of fitted numbers.
@@ -41,9 +43,9 @@ std::size_t complexity(const Model& model) noexcept;
 /// decays too slowly would fit a tone, and that of one below the excited band a drift.
 bool is_stable(const Body& body);
 
-/// True when a pole that turns at least least_turn decays within more than half of the time that
-/// largest_radius allows: the bound may hold a mode back, Eq. DG-66.
-bool rings_near_bound(const Body& body);
+/// True when a pole decays within more than half of the time that its bound allows: the bound may
+/// hold it back, Eq. DG-66.
+bool is_near_bound(const Body& body);
 
 /// The poles that is_stable() would refuse, mirrored into the unit circle, then drawn in.
 void stabilise(Body& body);
