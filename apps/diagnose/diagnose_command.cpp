@@ -20,6 +20,7 @@
 #include "apps/libraries/report/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/diagnosis/verdict_stability.hpp"
 #include "services/files/diagnosis/model_file.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/system/process/run_jobs.hpp"
@@ -35,6 +36,7 @@ struct Arguments {
   std::filesystem::path save;
   std::filesystem::path json;
   std::filesystem::path report;
+  int stability = 0;
 };
 
 // A recording that is given twice would be held out and fitted to at the same time.
@@ -83,7 +85,10 @@ int run(const Arguments& arguments) {
     done += 0.5 * (1.0 - done);  // the number of effects is not known in advance
     return !stop.requested();
   };
-  const diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
+  diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
+  if (arguments.stability > 0) {
+    result.stability = diagnosis::verdict_stability(measurement, options, arguments.stability);
+  }
   progress.finish();
   if (result.no_model && files.wants("--save")) {
     throw ConfigError("--save", "no model (" + result.no_model->why + ")",
@@ -132,6 +137,10 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   verb->add_option("--output", arguments->options.output, "channel that the model predicts")
       ->capture_default_str();
   add_diagnose_options(*verb, arguments->options);
+  verb->add_option("--stability", arguments->stability,
+                   "repeat the diagnosis this many times, a fifth of the recording left out at "
+                   "random, and count the verdicts [0: no repetition]")
+      ->check(CLI::Range(1, 1000));
   verb->add_option("--trial", arguments->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
   measurement::add_read_options(*verb, arguments->read);

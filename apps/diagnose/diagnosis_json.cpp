@@ -161,6 +161,12 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
     if (!kind->any_shape()) limits[std::string(kind->name())] = diagnosis.detection_limit_of(*kind);
   }
+  ordered_json stability;
+  if (diagnosis.stability) {
+    for (const auto& [verdict, count] : diagnosis.stability->counts) {
+      stability[verdict] = static_cast<double>(count) / diagnosis.stability->repetitions;
+    }
+  }
   const ordered_json json{{"input", inputs_of(diagnosis)},
                           {"output", diagnosis.options.output},
                           {"output_unit", diagnosis.output_unit},
@@ -175,6 +181,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                           {"detection_limit", diagnosis.detection_limit},
                           {"detection_limits", limits},
                           {"verdict", diagnosis.verdict()},
+                          {"stability", stability},
                           {"no_model", no_model_json(diagnosis)},
                           {"screening", measurement::screening_json(diagnosis.screening)},
                           {"least_force_n", least_force_json(diagnosis)},
@@ -207,6 +214,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
       !diagnosis.no_model && none_carried(diagnosis)
           ? ", and the model that is saved carries none of them"
           : "");
+  if (diagnosis.stability) add("stability     {}\n", stability_in_words(*diagnosis.stability));
   if (diagnosis.no_model) {
     add("              {}: {}\n", diagnosis.no_model->reason, diagnosis.no_model->why);
   } else if (!diagnosis.has_effect_that_counts() && !diagnosis.effects.empty()) {

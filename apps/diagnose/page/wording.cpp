@@ -195,4 +195,13 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
          ". It depends on none of the quantities that were tested.";
 }
 
+std::string stability_in_words(const diagnosis::VerdictStability& stability) {
+  std::vector<std::string> words;
+  for (const auto& [verdict, count] : stability.counts) {
+    words.push_back(fmt::format("{} {}", count, verdict));
+  }
+  return fmt::format("of {} disturbed repetitions {}", stability.repetitions,
+                     fmt::join(words, ", "));
+}
+
 }  // namespace stillhand::diagnose

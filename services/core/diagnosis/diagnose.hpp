@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/core/diagnosis/carried.hpp"
@@ -74,6 +75,13 @@ struct FoundEffect {
   std::vector<Size> sizes;        ///< physical numbers with their standard errors
 };
 
+/// How many repetitions on disturbed recordings end in which verdict, METHOD Eq. DG-83.
+struct VerdictStability {
+  int repetitions = 0;
+  /// The kind of the strongest effect, or a verdict without one; the most frequent first.
+  std::vector<std::pair<std::string, int>> counts;
+};
+
 /// The verdict and everything that it is based on.
 struct Diagnosis {
   DiagnoseOptions options;
@@ -96,6 +104,7 @@ struct Diagnosis {
   DetectionResult before;              ///< of the baseline's residual
   DetectionResult after;               ///< of the final model's
   SearchResult search;                 ///< the candidates of every step
+  std::optional<VerdictStability> stability;  ///< of verdict_stability(), where it was asked for
 
   /// "no model", or "effects found" if one of them counts.
   [[nodiscard]] std::string verdict() const;

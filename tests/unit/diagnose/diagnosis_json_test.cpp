@@ -181,6 +181,16 @@ TEST(DiagnosisJsonTest, NamesThatNeedEscapesComeBack) {
   EXPECT_EQ(json_of(diagnosis)["notes"][0], diagnosis.notes[0]);
 }
 
+TEST(DiagnosisJsonTest, ASharePerVerdictIsGivenWhereItWasAskedFor) {
+  diagnosis::Diagnosis diagnosis = diagnosis_with({});
+  EXPECT_TRUE(json_of(diagnosis)["stability"].is_null());
+  diagnosis.stability = {4, {{"hysteresis", 3}, {"nothing missing", 1}}};
+  EXPECT_EQ(json_of(diagnosis)["stability"],
+            json::parse(R"({"hysteresis":0.75,"nothing missing":0.25})"));
+  EXPECT_THAT(diagnosis_table(diagnosis),
+              HasSubstr("of 4 disturbed repetitions 3 hysteresis, 1 nothing missing"));
+}
+
 TEST(DiagnosisJsonTest, TheTableHasALineForEveryError) {
   const std::string bare = diagnosis_table(diagnosis_with({}));
   EXPECT_THAT(bare, AllOf(HasSubstr("a_y,a_x"), HasSubstr("order 1"), HasSubstr("128 Hz"),
