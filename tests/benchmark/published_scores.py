@@ -216,7 +216,7 @@ def main():
             try:
                 score = Score(bench, train, test, pathlib.Path(scratch), picture)
             except Failed as why:
-                wrong.append(f"{name}: {why}")
+                print(f"| {name}: {bench.known} | {str(why).partition(' (')[0]} | {bench.published} {bench.unit} | | | |")
                 continue
         print(f"| {name}: {bench.known} | {score.effects} | {bench.published} {bench.unit} | {score.linear:.3g}, "
               f"{score.carried:.3g} | {score.fir:.3g}, {score.narx:.3g} | {score.seconds:.1f} |", flush=True)
