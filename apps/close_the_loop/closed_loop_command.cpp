@@ -17,6 +17,7 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/population/population.hpp"
 #include "services/files/cancellation/control_model_file.hpp"
@@ -250,7 +251,7 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
     } else {
       arguments->live ? run_live(*arguments) : run_in_process(*arguments);
     }
-    std::printf("report in %s\n", arguments->lab.out.string().c_str());
+    report::say_report(arguments->lab.out);
     status = 0;
   });
 }

@@ -13,6 +13,7 @@
 #include "apps/diagnose/diagnosis_json.hpp"
 #include "apps/diagnose/page/diagnosis_report.hpp"
 #include "apps/libraries/measurement/read_options.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/result_files.hpp"
@@ -102,14 +103,13 @@ int run(const Arguments& arguments) {
   if (folder) write_report(result, measurement, arguments.recordings, *folder);
   files.publish();
   std::fputs(diagnosis_table(result).c_str(), stdout);
-  if (folder) std::printf("report in %s\n", arguments.report.string().c_str());
-  report::say_next(arguments.report.empty()
-                       ? "the same command with --report DIR draws what was found"
-                       : fmt::format("open {}", (arguments.report / "report.html").string()));
+  folder ? report::say_report(arguments.report)
+         : report::say_next("the same command with --report DIR draws what was found");
   report::say_next(arguments.save.empty()
                        ? "--save MODEL keeps the model, for `stillhand predict`"
-                       : fmt::format("stillhand predict {} ANOTHER_RECORDING --out predicted.csv",
-                                     arguments.save.string()));
+                       : fmt::format("stillhand predict {} ANOTHER_RECORDING{} --out predicted.csv",
+                                     report::quoted_for_shell(arguments.save.string()),
+                                     measurement::words_of(arguments.read)));
   return 0;
 }
 

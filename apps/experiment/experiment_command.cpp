@@ -15,6 +15,7 @@
 #include "apps/experiment/status.hpp"
 #include "apps/experiment/unblind.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/libraries/session/instructions.hpp"
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -81,7 +82,9 @@ int run(Typed typed) {
           ? next_participant(folder)
           : participant_index(typed.participant, folder.design().participants);
   runtime::Stop stop;
-  return conduct(folder, index, typed.lab, stop);
+  const int status = conduct(folder, index, typed.lab, stop);
+  report::say_next("stillhand experiment status " + typed.folder.string());
+  return status;
 }
 
 int show_status(const Typed& typed) {
@@ -103,7 +106,9 @@ void add_new(CLI::App& verb, const std::shared_ptr<Typed>& typed) {
   sub->add_option("--title", design.title, "title")->capture_default_str();
   sub->add_option("--conditions", typed->conditions, live_conditions())->capture_default_str();
   sub->add_option("--participants", design.participants, "planned number")->capture_default_str();
-  sub->add_option("--order", typed->order, "random, latin or williams")->capture_default_str();
+  sub->add_option("--order", typed->order, "orders of the trials")
+      ->type_name("{random,latin,williams}")
+      ->capture_default_str();
   sub->add_option("--blocks", design.blocks, "blocks")->capture_default_str();
   sub->add_option("--trials", design.trials, "trials of each condition in a block")
       ->capture_default_str();
@@ -111,7 +116,9 @@ void add_new(CLI::App& verb, const std::shared_ptr<Typed>& typed) {
       ->capture_default_str();
   sub->add_option("--identify-seconds", design.identify_s, "length of the pegged trial [s]")
       ->capture_default_str();
-  sub->add_option("--operator", design.who, "simulated, mouse or gamepad")->capture_default_str();
+  sub->add_option("--operator", design.who, "who tracks")
+      ->type_name("{simulated,mouse,gamepad}")
+      ->capture_default_str();
   sub->add_option("--control-model", typed->control_model,
                   "model of condition C+, copied into the folder; `stillhand close-the-loop` and "
                   "`stillhand control-model` write such a file")
@@ -173,6 +180,9 @@ void add_rest(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) 
     const std::string text = unblind(
         Folder(typed->folder), {typed->reason, typed->participant, typed->incomplete}, std::cin);
     std::fputs(text.c_str(), stdout);
+    if (typed->participant.empty()) {
+      report::say_next("stillhand experiment report " + typed->folder.string());
+    }
   });
 }
 

@@ -11,6 +11,7 @@
 #include "apps/identify/identify.hpp"
 #include "apps/identify/identify_output.hpp"
 #include "apps/libraries/measurement/read_options.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/result_files.hpp"
 #include "apps/libraries/report/text.hpp"
@@ -79,7 +80,8 @@ int run(const Arguments& arguments) {
   if (files.wants("--json")) files.set_json("--json", result_json(result));
   files.publish();
   std::fputs(result_table(result).c_str(), stdout);
-  report::say_next("stillhand diagnose " + arguments.recording + " says what this model lacks");
+  report::say_next("stillhand diagnose " + report::quoted_for_shell(arguments.recording) +
+                   measurement::words_of(arguments.read) + " says what this model lacks");
   return 0;
 }
 

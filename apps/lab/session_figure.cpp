@@ -36,9 +36,9 @@ std::string title_of(const session::TrialResult& trial, const std::string& rig_p
   return title + " (devices" + (at == std::string::npos ? "" : "; " + rig_parts.substr(at)) + ")";
 }
 
-report::Panel force_panel(const session::TrialResult& trial, const std::string& rig_parts) {
+report::Panel force_panel(const session::TrialResult& trial, const session::SessionResult& result) {
   const session::Excerpt& excerpt = trial.excerpt;
-  report::Panel out = panel(title_of(trial, rig_parts), "force [N]", kForceExtent_n);
+  report::Panel out = panel(title_of(trial, result.rig_parts), "force [N]", kForceExtent_n);
   // Of a rig of devices nobody knows the feedthrough.
   const bool known = !excerpt.feedthrough_n.empty() && std::isfinite(excerpt.feedthrough_n.front());
   out.series = {
@@ -48,6 +48,12 @@ report::Panel force_panel(const session::TrialResult& trial, const std::string& 
        .y = excerpt.feedthrough_n},
       {.label = "motor", .colour = Colour::kModel, .x = excerpt.time_s, .y = excerpt.motor_n}};
   if (!known) out.series.erase(out.series.begin());
+  for (const auto& [label, miss] : result.disturbances) {
+    if (label != trial.label || miss.trial_s < 0.0 || miss.trial_s > excerpt.time_s.back())
+      continue;
+    out.reference_lines.push_back(
+        {report::Direction::kVertical, miss.trial_s, miss.process + " late", Colour::kWarning});
+  }
   return out;
 }
 
@@ -77,7 +83,7 @@ std::vector<report::Drawing> draw_session(const session::SessionResult& result,
       "(feedthrough), and the motor's. Below: target and cursor.";
   figure.columns = static_cast<int>(shown.size());
   figure.height_px = 520;
-  for (const auto* trial : shown) figure.panels.push_back(force_panel(*trial, result.rig_parts));
+  for (const auto* trial : shown) figure.panels.push_back(force_panel(*trial, result));
   for (const auto* trial : shown) {
     figure.panels.push_back(hand_panel(*trial, trial->label == session::Condition::kB
                                                    ? Colour::kConditionB

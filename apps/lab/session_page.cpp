@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -31,7 +32,10 @@ std::vector<report::Cell> own_row(const session::SessionResult& result,
   std::vector<report::Cell> row{std::string(metric.title) + ", this session"};
   for (const auto label : session::kPaperConditions) {
     const session::TrialResult* trial = trial_of(result, label);
-    row.emplace_back(number(trial ? std::optional(value_of(*trial, metric)) : std::nullopt),
+    const bool disturbed = std::ranges::any_of(
+        result.disturbances, [&](const auto& each) { return each.label == label; });
+    row.emplace_back(number(trial ? std::optional(value_of(*trial, metric)) : std::nullopt) +
+                         (disturbed ? " *" : ""),
                      report::Emphasis::kStrong);
   }
   row.emplace_back(restored(restoration_of(result, metric)), report::Emphasis::kStrong);
@@ -88,7 +92,7 @@ report::Page session_page(const LabOptions& options, const session::SessionResul
   page.paragraph(
       "The paper's RMS error has no unit; this page takes 5.5 mm for a unit. One trial of a "
       "condition has no interval, and another session gives other numbers.");
-  for (const std::string& line : disturbance_lines(result)) page.paragraph(line + ".");
+  for (const std::string& line : disturbance_lines(result)) page.paragraph("* " + line + ".");
   add_mitigations(result, page);
   if (drawings.empty()) return page;
   page.section("Traces");

@@ -107,8 +107,9 @@ void print_models(const session::SessionResult& result,
   }
   if (result.conversion) {
     std::printf(
-        "conversion to 1 kHz: the filter leaves %.1f %% of the force, a zero-order hold of the 50 "
-        "Hz model %.1f %%\n",
+        "left of the pegged feedthrough force: %.1f %% by the filter at 1 kHz, %.1f %% by the 50 "
+        "Hz "
+        "model if its output were held for 20 ms\n",
         100.0 * result.conversion->control_filter, 100.0 * result.conversion->zero_order_hold);
   }
 }
@@ -185,14 +186,19 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   for (const auto& [topic, count] : result.lost_ticks) lost += count;
   std::printf("lost ticks on the 1 kHz topics: %lld\n", static_cast<long long>(lost));
   std::printf("results in %s\n", options.out.string().c_str());
+  report::say_next("open " + (options.out / kSessionPage).string());
+  if (!result.disturbances.empty()) {
+    report::say_next("stillhand misses " + (options.out / "session.mcap").string() +
+                     " --picture late.svg");
+  }
   std::size_t completed = 0;
   for (const session::TrialOutcome& outcome : outcomes) {
     if (outcome.completed) {
       ++completed;
       continue;
     }
-    runtime::remark(fmt::format("trial {} ({}) does not count: {}", outcome.planned.trial.number,
-                                session::name_of(outcome.planned.label), outcome.aborted));
+    runtime::remark(fmt::format("trial {}, {}, does not count: {}", outcome.planned.trial.number,
+                                session::in_words(outcome.planned.label), outcome.aborted));
   }
   return !interrupted && completed == session::plan(options.protocol).size() ? 0 : 1;
 }

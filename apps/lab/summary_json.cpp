@@ -257,7 +257,7 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
   std::vector<std::string> lines;
   for (const auto& [label, miss] : worst) {
     if (lines.size() == kMost) break;
-    lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::name_of(label),
+    lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::in_words(label),
                                 miss.trial_s, session::what_happened(miss)));
   }
   if (worst.size() > kMost) {

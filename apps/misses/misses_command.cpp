@@ -14,6 +14,7 @@
 
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/result_files.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/libraries/session/clock_line.hpp"
 #include "apps/libraries/session/misses.hpp"
 #include "apps/libraries/session/misses_json.hpp"
@@ -32,7 +33,8 @@ struct Arguments {
 
 std::string when(const session::Miss& miss) {
   if (miss.trial < 0) return fmt::format("no trial, {:.3f} s", miss.from_s);
-  return fmt::format("trial {} at {:.3f} s", miss.trial, miss.trial_s);
+  const std::string trial = miss.pegged ? "identification" : fmt::format("trial {}", miss.trial);
+  return fmt::format("{} at {:.3f} s", trial, miss.trial_s);
 }
 
 std::string json_of(const std::vector<session::Miss>& misses) {
@@ -87,7 +89,7 @@ int run(const Arguments& arguments) {
   }
   const auto misses = session::misses_in(session, 1e-3 * arguments.least_ms);
   for (const session::Miss& miss : misses) {
-    fmt::print("{:<22} {}{}\n", when(miss), session::what_happened(miss),
+    fmt::print("{:<27} {}{}\n", when(miss), session::what_happened(miss),
                miss.waited.empty() ? "" : fmt::format("; {} waited", fmt::join(miss.waited, ", ")));
   }
   if (misses.empty()) {
@@ -100,6 +102,10 @@ int run(const Arguments& arguments) {
     files.set("--picture", report::draw(figures).front().svg);
   }
   files.publish();
+  if (!misses.empty()) {
+    report::say_next("stillhand dashboard --recording " + arguments.recording +
+                     ", where N jumps to the next one");
+  }
   for (const std::string& damage : session.damage) {
     runtime::remark(arguments.recording + ": " + damage);
   }

@@ -11,6 +11,7 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/result_files.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/predict/judgement.hpp"
 #include "apps/predict/predict.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -97,6 +98,9 @@ int run(const Arguments& arguments) {
   files.set("--out", recording::to_csv(prediction.table));
   files.publish();
   print(arguments, models, prediction, judgement);
+  if (arguments.picture.empty() && judgement) {
+    report::say_next("the same command with --picture prediction.png draws an excerpt");
+  }
   return 0;
 }
 

@@ -100,9 +100,9 @@ void add_record_command(CLI::App& cli, int& status) {
   verb->add_flag("--trigger-on-deadline", options.trigger_on_deadline,
                  "write the window when a process reports a missed deadline");
   recording::add_keep_options(*verb, arguments->keep);
-  verb->add_option(
-      "--remote", arguments->remote,
-      "do not record; send pause, resume, trigger or stop to the recorders of the domain");
+  verb->add_option("--remote", arguments->remote,
+                   "do not record; send this to the recorders of the domain")
+      ->type_name("{pause,resume,trigger,stop}");
   verb->add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();

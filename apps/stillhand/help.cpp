@@ -109,23 +109,35 @@ class Help final : public CLI::Formatter {
     return name;
   }
 
+  // The words of a choice, or the type; then "=4", "(1 to 12)", "(required)", "(with --live)".
   // What options exclude each other is said when somebody tries.
   std::string make_option_opts(const CLI::Option* option) const override {
-    std::string text = Formatter::make_option_opts(option);
-    text = text.substr(0, text.find(" Excludes:"));
-    // "INT:INT in [0 - 10000]" to "INT:0 to 10000"
-    const auto range = text.find(" in [");
-    const auto end = text.find(']', range);
-    if (range == std::string::npos || end == std::string::npos) return text;
-    const auto type = text.rfind(':', range);
-    std::string bounds = text.substr(range + 5, end - range - 5);
-    if (const auto dash = bounds.find(" - "); dash != std::string::npos) {
-      bounds.replace(dash, 3, " to ");
+    if (!option->get_option_text().empty()) return " " + option->get_option_text();
+    const std::string type = option->get_type_name();  // "INT:INT in [1 - 12]", "TEXT:{auto,arx}"
+    if (type.empty()) return behind(*option);
+    const auto colon = std::min(type.find(':'), type.size());
+    const std::string check = type.substr(std::min(colon + 1, type.size()));
+    std::string text = " " + (check.starts_with("{") ? check : type.substr(0, colon));
+    if (option->get_expected_max() > 1) text += " ...";
+    if (!option->get_default_str().empty()) text += "=" + option->get_default_str();
+    if (const auto in = check.find(" in ["); in != std::string::npos) {
+      std::string bounds = check.substr(in + 5, check.find(']', in) - in - 5);
+      if (const auto dash = bounds.find(" - "); dash != std::string::npos) {
+        bounds.replace(dash, 3, " to ");
+      }
+      text += " (" + bounds + ")";
     }
-    return text.substr(0, type + 1) + bounds + text.substr(end + 1);
+    return text + behind(*option);
   }
 
  private:
+  static std::string behind(const CLI::Option& option) {
+    std::string with;
+    for (const CLI::Option* each : option.get_needs()) with += " " + each->get_name();
+    return (option.get_required() ? " (required)" : "") +
+           (with.empty() ? "" : " (with" + with + ")");
+  }
+
   [[nodiscard]] std::string help_of_verb(const CLI::App* app, std::string name,
                                          CLI::AppFormatMode mode) const {
     if (mode != CLI::AppFormatMode::Normal || count_of(*app) <= kOnOnePage) {
@@ -192,7 +204,7 @@ std::string misspelt_verb(const std::vector<std::string>& words) {
          "; `stillhand help` explains each";
 }
 
-std::string misspelt_word(const CLI::App& cli) {
+std::string usage_error(const CLI::App& cli, const std::string& what) {
   const CLI::App* verb = &cli;
   std::string name = "stillhand";
   while (!verb->get_subcommands().empty()) {
@@ -203,7 +215,9 @@ std::string misspelt_word(const CLI::App& cli) {
   const auto own = verb->get_subcommands({});
   const auto word = std::ranges::find_if(
       words, [&](const std::string& each) { return !own.empty() || each.starts_with("--"); });
-  if (word == words.end()) return "";
+  if (word == words.end()) {
+    return name + ": " + what + "; see `stillhand help" + name.substr(name.find(' ')) + "`";
+  }
   std::vector<std::string> names;
   for (const CLI::App* each : own) names.push_back(each->get_name());
   for (const CLI::Option* option : verb->get_options()) {

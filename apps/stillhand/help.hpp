@@ -21,8 +21,8 @@ std::vector<std::string> without_help_verb(std::vector<std::string> words);
 /// option, or there is none.
 std::string misspelt_verb(const std::vector<std::string>& words);
 
-/// Of a command line that did not end well: which word is neither an option nor a verb of its verb,
-/// and which is meant; empty: it has none of this kind.
-std::string misspelt_word(const CLI::App& cli);
+/// One line for a command line that did not end well: the word that is neither an option nor a verb
+/// of its verb, and which is meant; without one `what`, and whose help to read.
+std::string usage_error(const CLI::App& cli, const std::string& what);
 
 }  // namespace stillhand

@@ -88,12 +88,7 @@ int run(int argc, char** argv) {
     return flushed(status);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return flushed(cli.exit(error));  // --help, --version
-    const std::string why = stillhand::misspelt_word(cli);
-    if (!why.empty()) {
-      std::cerr << why << '\n';
-    } else {
-      runtime::remark(std::string(error.what()) + "; see `stillhand help VERB`");
-    }
+    std::cerr << stillhand::usage_error(cli, error.what()) << '\n';
     return 2;
   } catch (const stillhand::ConfigError& error) {
     runtime::remark(error.what());

@@ -14,6 +14,7 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/result_files.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/study/explain/calibrate.hpp"
 #include "apps/study/explain/explanation_output.hpp"
 #include "apps/study/mitigations/campaign_command.hpp"
@@ -84,7 +85,7 @@ int explain(const StudyRecord& record, const Arguments& arguments, bool subjects
       with_progress(explain_paper, explain_options(record, subjects_given));
   write_explanation(explanation, record.command_line, folder);
   print_explanation(explanation);
-  fmt::print("report in {}\n", arguments.out.string());
+  report::say_report(arguments.out);
   return 0;
 }
 

@@ -11,6 +11,7 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/study/recorded/find_sessions.hpp"
 #include "apps/study/recorded/recorded_subjects.hpp"
 #include "apps/study/study.hpp"
@@ -75,7 +76,7 @@ void conclude(StudyRecord& record, report::StagedFolder& folder, const runtime::
         fmt::format("got {} subject(s), want 3 or more for a meaningful t-test; the paper has 12",
                     record.options.subjects));
   }
-  fmt::print("report and figures in {}\n", out.string());
+  report::say_report(out);
 }
 
 bool has_simulated_people(const StudyRecord& record) {

@@ -11,6 +11,7 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/vehicle/region.hpp"
 #include "apps/vehicle/region_output.hpp"
 #include "services/files/settings/check_name.hpp"
@@ -51,6 +52,7 @@ int run(const Arguments& arguments) {
       .write(folder.path() / "report.html");
   folder.publish(region_files());
   std::fputs(region_text(options, region).c_str(), stdout);
+  report::say_report(arguments.out);
   return 0;
 }
 
@@ -69,8 +71,8 @@ void add_vehicle_command(CLI::App& cli, int& status) {
   verb->add_option("--out", arguments->out, "folder for figure, report and numbers")
       ->required()
       ->check(settings::check_name);
-  verb->add_option("--preset", options.preset,
-                   "first_order, second_order, excavator, wheelchair or aircraft_roll")
+  verb->add_option("--preset", options.preset, "vehicle")
+      ->type_name("{first_order,second_order,excavator,wheelchair,aircraft_roll}")
       ->capture_default_str();
   verb->add_option("--subjects", options.subjects, "number of simulated subjects")
       ->check(CLI::Range(1, 1000))

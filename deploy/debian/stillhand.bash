@@ -11,7 +11,11 @@ _stillhand() {
     path+=("$next")
   done
   help=$("${COMP_WORDS[0]}" "${path[@]}" --help-all 2>/dev/null)
-  [[ $before == --* ]] && choices=$(sed -n "s/^  $before [A-Z]*:{\([^}]*\)}.*/\1/p" <<<"$help")
+  if [[ $before == --* ]]; then
+    choices=$(sed -n "s/^  $before {\([^}]*\)}.*/\1/p" <<<"$help")
+  elif [[ $word != -* ]]; then
+    choices=$(sed -n '/^Positionals:/,/^$/ s/^  [a-z]* {\([^}]*\)}.*/\1/p' <<<"$help")
+  fi
   if [[ -n $choices ]]; then
     words=${choices//,/ }
   elif [[ $word == -* ]]; then

@@ -2,7 +2,8 @@
 """`stillhand misses` on sessions in which processes were stopped for a known time, and on files that are none.
 
 A stopped process writes nothing, so it is late by at least the time from its stop to its continuation, on however busy
-a machine. `--campaign` stops five processes for 20 to 140 ms in ten sessions and prints by how much each gap differs.
+a machine. `--campaign` stops five processes for 30 and 140 ms in ten sessions and prints by how much each gap differs:
+on an idle machine by 1 ms at most (apps/misses/RESULTS.md).
 """
 import json
 import os
@@ -13,8 +14,9 @@ import time
 import lab_process
 from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
 
-# Half a tick (Eq. MI-1), and the time from the signal until each thread stands: no figure for it is known.
+# Half a tick (Eq. MI-1), and the time from the signal until each thread stands, which grows with the machine's load.
 TOLERANCE_S = 0.01
+CAMPAIGN_TOLERANCE_S = 1e-3  # on an idle machine: half a tick, and as much again for the signals
 
 
 def misses(recording, *words):
@@ -71,10 +73,11 @@ class MissesTest(LabTestCase):
                 for length_s in (0.03, 0.14)):
             found, stopped_s = self.the_stop(service, length_s)
             error_s = 1e-3 * found["gap_ms"] - stopped_s
-            print(f"{number} {service}: stood still for {1e3 * stopped_s:.1f} ms, found {1e3 * found['late_s']:.1f} ms")
+            print(f"{number} {service}: stood still for {1e3 * stopped_s:.1f} ms, found {found['gap_ms']:.1f} ms",
+                  flush=True)
             worst_s = max(worst_s, abs(error_s))
         print(f"largest difference {1e3 * worst_s:.2f} ms")
-        self.assertLess(worst_s, TOLERANCE_S)
+        self.assertLess(worst_s, CAMPAIGN_TOLERANCE_S)
 
 
 if __name__ == "__main__":

@@ -9,9 +9,12 @@
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/report_tables.hpp"
 #include "apps/diagnose/page/wording.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/plot/figure_table.hpp"
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
+#include "version.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -35,6 +38,9 @@ Pairs facts_of(const Evidence& evidence, const std::vector<std::string>& recordi
   }
   const std::size_t order = found.baseline.model.body.order();
   Pairs facts{
+      {"date", report::provenance_of_this_call({}).date},
+      {"version", kVersion},
+      {"command line", report::command_line()},
       {"verdict", found.verdict()},
       {recordings.size() == 1 ? "recording" : "recordings, diagnosed together",
        comma_separated(recordings)},
@@ -67,8 +73,8 @@ void add_errors(Page& page, const Evidence& evidence,
   const Diagnosis& found = evidence.found;
   page.section("Error before and after");
   page.table(error_table(found));
-  page.paragraph("Noise floor: " + shown_sentence(found.noise_floor.method, found.output_unit) +
-                 ".");
+  page.paragraph("The noise floor is the error that a complete model would leave. Its source: " +
+                 shown_sentence(found.noise_floor.method, found.output_unit) + ".");
   add_figure(page, drawings, "prediction");
   add_figure(page, drawings, "residual_spectra");
 }

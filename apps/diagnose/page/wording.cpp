@@ -41,15 +41,14 @@ std::string error_in_words(const Diagnosis& diagnosis) {
   const diagnosis::HeldOutError& carried = diagnosis.carried_error;
   const bool whole = std::ranges::all_of(
       diagnosis.effects, [](const FoundEffect& effect) { return effect.carried == 1.0; });
-  return "the RMS error on held-out data is " + shown(diagnosis.baseline_error.rmse, unit) +
-         " instead of " + shown(carried.rmse, unit) +
-         " (95 %: " + interval(carried.low, carried.high) + ")" +
-         (whole ? std::string()
-                : " with what the saved model carries of " +
-                      std::string(diagnosis.effects.size() == 1 ? "it" : "them") + ", " +
-                      shown(diagnosis.final_error.rmse, unit) + " with all of it") +
-         "; the noise floor is " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
-         interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ")";
+  const std::string it = diagnosis.effects.size() == 1 ? "it" : "them";
+  return "With " + (whole ? it : "the part of " + it + " that the saved model carries") +
+         ", the RMS error on held-out data is " + shown(carried.rmse, unit) +
+         " (95 %: " + interval(carried.low, carried.high) + ") instead of " +
+         shown(diagnosis.baseline_error.rmse, unit) +
+         (whole ? "" : "; with all of " + it + ", " + shown(diagnosis.final_error.rmse, unit)) +
+         ". The noise floor is " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
+         interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ").";
 }
 
 const diagnosis::EffectKind& hardest_to_find() {
@@ -162,13 +161,11 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
     }
     return "Effects found: " + model + " lacks " + enumerated(names) +
            (diagnosis.unexplained ? ", and something that no kind of effect explains" : "") +
-           (none_carried(diagnosis) ? ", none of which the saved model carries" : "") +
-           ". By chance, an improvement like " +
-           (names.size() == 1 ? "it" : "the smallest of them") + " has the probability " +
-           p_value(largest_p) +
-           (tied ? "; other kinds explain some of it equally well (see the ties)" : "") +
-           ". Without " + (names.size() == 1 ? "it " : "them ") + error_in_words(diagnosis) + "." +
-           (too_small.empty() ? "" : " " + too_small);
+           (none_carried(diagnosis) ? ", none of which the saved model carries" : "") + ". " +
+           (too_small.empty() ? "" : too_small + " ") + error_in_words(diagnosis) +
+           " The probability of such an improvement by chance is " + p_value(largest_p) +
+           (names.size() == 1 ? "." : " for the smallest of them.") +
+           (tied ? " Other kinds explain the data as well: see \"ties\" in Table 2." : "");
   }
   const std::string left = shown(diagnosis.baseline_error.rmse, diagnosis.output_unit) +
                            " RMS on held-out data (95 %: " +
@@ -182,8 +179,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            shown(diagnosis.noise_floor.rmse, diagnosis.output_unit) + ".";
   }
   if (!too_small.empty()) {
-    return "Nothing missing that counts. " + too_small + " With them " + error_in_words(diagnosis) +
-           ".";
+    return "Nothing missing that counts. " + too_small + " " + error_in_words(diagnosis);
   }
   return "Nothing missing: no effect reduces the error of " + model +
          " by more than chance does. An effect that adds " +

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/libraries/measurement/read_options.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <iostream>
 
 #include "apps/libraries/measurement/tables/ask.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "services/files/settings/check_name.hpp"
 
 namespace stillhand::measurement {
@@ -55,18 +57,31 @@ std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options)
                                      options.mapping.form.separator =
                                          parse_separator(word, "--separator");
                                    },
-                                   "column separator of a text file: comma, semicolon, tab or "
-                                   "blank [found from the content]")
+                                   "column separator of a text file [found from the content]")
+                               ->type_name("{comma,semicolon,tab,blank}")
                                ->group(kGroup);
-  CLI::Option* decimal =
-      verb.add_option_function<std::string>(
-              "--decimal",
-              [&options](const std::string& word) {
-                options.mapping.form.decimal = parse_decimal(word, "--decimal");
-              },
-              "decimal sign of a text file: point or comma [found from the content]")
-          ->group(kGroup);
+  CLI::Option* decimal = verb.add_option_function<std::string>(
+                                 "--decimal",
+                                 [&options](const std::string& word) {
+                                   options.mapping.form.decimal = parse_decimal(word, "--decimal");
+                                 },
+                                 "decimal sign of a text file [found from the content]")
+                             ->type_name("{point,comma}")
+                             ->group(kGroup);
   return {map, file, rate, separator, decimal};
+}
+
+std::string words_of(const ReadOptions& options) {
+  if (!options.map_file.empty()) {
+    return " --map-file " + report::quoted_for_shell(options.map_file);
+  }
+  const Mapping& mapping = options.mapping;
+  std::string words = mapping.columns.empty() ? "" : " --map";
+  for (const ColumnWish& wish : mapping.columns) {
+    words += " " + report::quoted_for_shell(wish_text(wish));
+  }
+  if (mapping.rate_hz) words += fmt::format(" --sample-rate {}", *mapping.rate_hz);
+  return words;
 }
 
 }  // namespace stillhand::measurement

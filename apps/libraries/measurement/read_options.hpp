@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 #include <vector>
 
 #include "apps/libraries/measurement/read.hpp"
@@ -13,5 +14,9 @@ namespace stillhand::measurement {
 /// is not there is asked for.
 /// @returns the options that were added
 std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options);
+
+/// The columns and the rate as the command line of a further verb states them, with a blank before
+/// each; empty: nothing was stated.
+std::string words_of(const ReadOptions& options);
 
 }  // namespace stillhand::measurement

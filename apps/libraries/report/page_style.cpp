@@ -88,7 +88,8 @@ constexpr std::string_view kScreens = R"(
   h1 { font-size: 1.5rem; }
   h2 { font-size: 1.2rem; }
   .card { padding: 4px; }
-  th, td { padding: .3rem .55rem; }
+  th, td { padding: .3rem .35rem; white-space: normal; }
+  td.l { min-width: 5rem; }
 })";
 
 // Paper.

@@ -9,6 +9,10 @@ namespace stillhand::report {
 class ProgressLine {
  public:
   ProgressLine();
+  ~ProgressLine() { finish(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
   /// @param done  share of the step in [0, 1]
   void show(const std::string& step, double done);
   /// Ends the bar's line, before other output.

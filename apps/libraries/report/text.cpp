@@ -181,4 +181,9 @@ void say_next(const std::string& step) {
   if (isatty(STDOUT_FILENO) == 1) fmt::print("next: {}\n", step);
 }
 
+void say_report(const std::filesystem::path& folder) {
+  fmt::print("report in {}\n", folder.string());
+  say_next("open " + (folder / "report.html").string());
+}
+
 }  // namespace stillhand::report

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,5 +43,7 @@ double text_width_px(std::string_view text, double font_size_px);
 
 /// What a person may type or open next, in a line of its own, on a terminal alone.
 void say_next(const std::string& step);
+/// "report in FOLDER", and next to open its page.
+void say_report(const std::filesystem::path& folder);
 
 }  // namespace stillhand::report

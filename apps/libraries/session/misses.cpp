@@ -220,6 +220,7 @@ void judge(const SessionRecording& session, const Forces& forces, Miss& miss) {
     if (!trial.covers(next->tick())) continue;
     miss.trial = trial.number;
     miss.trial_s = static_cast<double>(next->tick() - trial.start_tick) * kControlPeriod_s;
+    miss.pegged = control.phase() == stillhand_msgs::PHASE_PEGGED;
     const Tick left = trial.start_tick + trial.duration_ticks - next->tick();
     end_ns = miss.from_ns + std::max<Tick>(left, 0) * kTick_ns;
   }

@@ -30,6 +30,7 @@ struct Miss {
   double from_s = 0.0;              ///< [s] the same from the start of the recording
   std::int64_t trial = -1;          ///< in whose measured part or ramps it was; -1: in none
   double trial_s = 0.0;             ///< [s] from the first measured tick of the trial
+  bool pegged = false;              ///< the trial is the identification
   std::vector<std::string> waited;  ///< processes behind it that were silent with it
   double force_before_n = 0.0;      ///< [N] RMS of the motor force in the second before
   double zero_s = 0.0;              ///< [s] for how long the motor force was zero then

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/mitigations/campaign_command.hpp"
 
-#include <fmt/format.h>
-
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/study/mitigations/campaign_output.hpp"
 #include "services/system/process/stop.hpp"
 
@@ -31,7 +30,7 @@ int run_campaign_command(const StudyRecord& record, const CampaignArguments& wor
   progress.finish();
   write_campaign(campaign, record.command_line, folder);
   print_campaign(campaign);
-  fmt::print("report in {}\n", out.string());
+  report::say_report(out);
   return 0;
 }
 

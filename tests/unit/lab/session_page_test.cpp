@@ -48,6 +48,18 @@ TEST(SessionPageTest, MoreThanAllHasItsWord) {
               HasSubstr("130 % (no interval), better than A"));
 }
 
+TEST(SessionPageTest, TheFigureOfADisturbedTrialIsMarked) {
+  session::SessionResult result;
+  result.trials = {trial(Condition::kB, 50.0), trial(Condition::kC, 35.0)};
+  session::Miss miss;
+  miss.process = "sensing";
+  result.disturbances = {{Condition::kC, miss}};
+  const std::string sut = session_page(LabOptions{}, result, {}).html();
+  EXPECT_THAT(sut, HasSubstr("35.00 *<"));
+  EXPECT_THAT(sut, HasSubstr("50.00<"));
+  EXPECT_THAT(sut, HasSubstr("* C disturbed"));
+}
+
 TEST(SessionPageTest, AConditionThatDidNotRunHasNoFigure) {
   session::SessionResult result;
   result.trials = {trial(Condition::kA, 20.0)};

@@ -162,6 +162,18 @@ TEST(SummaryJsonTest, ANumberThatCouldNotBeComputedIsNull) {
   EXPECT_TRUE(json["crossover_reference_hz"].is_null());
 }
 
+TEST(SummaryJsonTest, ADisturbanceNamesItsTrialAsAPersonWould) {
+  session::SessionResult result;
+  session::Miss miss;
+  miss.process = "sensing";
+  miss.late_s = 0.073;
+  miss.trial_s = 11.5;
+  result.disturbances = {{Condition::kC, miss}, {Condition::kIdentification, miss}};
+  EXPECT_THAT(disturbance_lines(result),
+              ElementsAre("C disturbed at 11.5 s: sensing was late by 73 ms",
+                          "the identification (I) disturbed at 11.5 s: sensing was late by 73 ms"));
+}
+
 TEST(SummaryJsonTest, ATrialHasItsTicksMissesAndMarks) {
   session::TrialOutcome marked = outcome(2, Condition::kC);
   marked.completed = false;

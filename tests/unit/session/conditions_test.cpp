@@ -34,6 +34,12 @@ TEST(ConditionsTest, NamesStandNextToLetters) {
   EXPECT_EQ(parse_conditions("none,force"), (std::vector<Condition>{Condition::kB, Condition::kC}));
 }
 
+TEST(ConditionsTest, ASentenceSpellsOutWhatNobodyTypes) {
+  EXPECT_EQ(in_words(Condition::kC), "C");
+  EXPECT_EQ(in_words(Condition::kDampingForce), "damping+force");
+  EXPECT_EQ(in_words(Condition::kIdentification), "the identification (I)");
+}
+
 TEST(ConditionsTest, AnUnknownNameIsRefusedInOneLineThatListsThemAll) {
   for (const char* wrong : {"s", "l", "arm-rest", "Signal", "signal+", "", "D"}) {
     const std::string line = refusal("A," + std::string(wrong) + ",B");

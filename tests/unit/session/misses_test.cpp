@@ -89,6 +89,7 @@ TEST(MissesTest, WhoStandsIsNamedWithTimeLengthForceAndWhoWaited) {
   EXPECT_EQ(miss.topic, "stillhand/sensed");
   EXPECT_EQ(miss.trial, 3);
   EXPECT_NEAR(miss.trial_s, 1.5, 1e-3);
+  EXPECT_FALSE(miss.pegged);
   EXPECT_NEAR(miss.late_s, 0.073, 0.5e-3 + 1e-12);  // Eq. MI-1: half a tick
   EXPECT_THAT(miss.waited, ElementsAre("motion", "cancellation", "display", "human_operator"));
   EXPECT_NEAR(miss.force_before_n, 5.0 / std::sqrt(2.0), 0.05);

@@ -101,7 +101,7 @@ std::vector<ConditionRow> rows() {
       resting(row("arm-rest+force", {force},
                   "as C, and the forearm rests; the model is that of the arm without the rest",
                   kMitigations)),
-      row("P", "", "perturbed", 0, Means::kCanceller, {},
+      row("P", "", "perturbed trial", 0, Means::kCanceller, {},
           "platform and motor move the hand at once, to identify it"),
       row("I", "", "identification", 0, Means::kNone, {}, "platform moves, the stick is pegged"),
       row("J", "", "free identification", 0, Means::kNone, {},
@@ -144,6 +144,11 @@ std::string mitigation_name(Condition condition) {
 std::string title_of(Condition condition, const char* between, const char* behind) {
   const std::string title = row_of(condition).title;
   return name_of(condition) + (title.empty() ? "" : between + title + behind);
+}
+
+std::string in_words(Condition condition) {
+  const ConditionRow& row = row_of(condition);
+  return row.where != 0 ? row.name : "the " + std::string(row.title) + " (" + row.name + ")";
 }
 
 bool cancels(Condition condition) {

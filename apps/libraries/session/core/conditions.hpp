@@ -95,6 +95,9 @@ std::string mitigation_name(Condition condition);
 /// "A stationary", "damping+force"; or "A (stationary)".
 std::string title_of(Condition condition, const char* between = " ", const char* behind = "");
 
+/// In a sentence: "C", "damping+force", "the identification (I)".
+std::string in_words(Condition condition);
+
 /// Whether the motor cancels, as in C.
 bool cancels(Condition condition);
 /// Whether it is a mitigation, which the trial's assignment carries by name and parts.

@@ -66,9 +66,10 @@ void use_final_model(NoiseFloor& floor, const ErrorBounds& bounds) {
     floor.high = std::min(floor.high, std::max(bounds.impulse_response, floor.rmse));
   }
   floor.method =
-      "the residual of the final model, corrected for the count of fitted numbers, without what "
-      "the questions about channels, state and time still explain. The interval is that of the "
-      "held-out blocks. It ends at the residual of a long impulse response, if that is lower";
+      "the residual of the final model. The part that tests of channels, state and time still "
+      "explain is subtracted, and the number of fitted values is corrected for. The interval ends "
+      "where that of the error on held-out blocks ends, or at the residual of a long impulse "
+      "response if this is lower";
   // Noise can't be more than is left: an estimate beyond that end says nothing.
   for (const NoiseEstimate& other : floor.estimates) floor.low = std::min(floor.low, other.rmse);
   if (floor.estimates.size() > 1) floor.method += ". It begins at the lowest estimate";
@@ -112,8 +113,8 @@ NoiseFloor noise_floor_of(const DetectionResult& after, const Screening& screeni
     floor.method +=
         (i == 1 ? ". Other estimates: " : ", ") + other.name + " " + digits(other.rmse, kDigits);
     if (other.name == "high frequencies") {
-      floor.method += " (in the excited band, the density is " + digits(ratio, kDigits) +
-                      " times that above the band)";
+      floor.method += " (the density in the excited band is " + digits(ratio, kDigits) +
+                      " times the density above it)";
     }
   }
   return floor;
