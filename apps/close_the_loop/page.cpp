@@ -2,9 +2,9 @@
 // The report: what the paper's model lacked, and how the hand tracks with each model.
 #include "apps/close_the_loop/output.hpp"
 #include "apps/diagnose/page/wording.hpp"
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "apps/libraries/session/paper_table.hpp"
-#include "version.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
@@ -190,7 +190,7 @@ report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawi
        {"seed", std::to_string(record.options.protocol.seed)},
        {"subject", record.subject == 0 ? "the rig's default" : std::to_string(record.subject)},
        {"repeats", std::to_string(record.conditions.at("A").size())},
-       {"version", kVersion}});
+       {"made by", report::made_by()}});
   add_tracking(page, record.conditions, drawings);
   add_verdict(page, result, drawings);
   page.section("The rounds");

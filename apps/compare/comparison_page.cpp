@@ -11,8 +11,8 @@
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/page.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/session/core/conditions.hpp"
-#include "version.hpp"
 
 namespace stillhand::compare {
 namespace {
@@ -152,8 +152,7 @@ void write_report(const Comparison& all, const std::filesystem::path& folder) {
   report::Page page(
       "Comparison",
       "Which condition is best for which metric, whom it harms, and how sure that is.");
-  page.facts(
-      {{"made by", std::string("stillhand ") + kVersion}, {"command", report::command_line()}});
+  page.facts({{"made by", report::made_by()}, {"command", report::command_line()}});
   page.list(findings(all));
   page.figure(drawings.front());
   for (std::size_t m = 0; m < kMetrics.size(); ++m) page.table(conditions_table(all, m));

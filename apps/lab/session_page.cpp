@@ -12,7 +12,6 @@
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "apps/libraries/session/paper_table.hpp"
-#include "version.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -75,10 +74,9 @@ report::Page session_page(const LabOptions& options, const session::SessionResul
                     "A: the platform stands. B: it moves. C: it moves, and the motor cancels what "
                     "the body passes on to the stick.");
   if (simulated_subject(options)) page.banner(report::kSimulatedBanner);
-  page.facts({{"date", report::provenance_of_this_call({}).date},
+  page.facts({{"made by", report::made_by()},
               {"seed", fmt::to_string(options.protocol.seed)},
               {"trial", report::short_number(options.protocol.trial_s) + " s"},
-              {"version", kVersion},
               {"command line", report::command_line()}});
   if (!result.rig_parts.empty()) page.paragraph("The " + result.rig_parts + ".");
   page.section("Tracking metrics");

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "apps/study/diagnoses_output.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/participants.hpp"
 #include "apps/study/report_sections.hpp"
-#include "version.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -76,7 +76,7 @@ void add_recorded_facts(report::Page& page, const StudyRecord& record) {
               {"trial", short_number(record.options.protocol.trial_s) + " s"},
               {"pegged trial", short_number(record.options.protocol.identify_s) + " s"},
               {"pre-registration", source.digest.empty() ? "none" : source.digest},
-              {"version", kVersion},
+              {"made by", report::made_by()},
               {"command line", record.command_line}});
   if (source.used.size() > source.participants.size() * record.analysis.conditions.size()) {
     page.paragraph(
@@ -105,7 +105,7 @@ void add_lead_facts(report::Page& page, const StudyRecord& record) {
               {"pegged trial", short_number(options.protocol.identify_s) + " s"},
               {"canceller", options.canceller},
               {"computed in", number(record.wall_s, 1) + " s"},
-              {"version", kVersion},
+              {"made by", report::made_by()},
               {"command line", record.command_line}});
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "services/core/statistics/descriptive.hpp"
 
@@ -275,6 +276,7 @@ report::Page region_page(const RegionOptions& options, const Region& region,
   page.facts({{"preset", options.preset},
               {"subjects", fmt::to_string(options.subjects)},
               {"seed", fmt::to_string(options.seed)},
+              {"made by", report::made_by()},
               {"command", command_line}});
   page.section("Stable region");
   for (const report::Drawing& drawing : drawings) page.figure(drawing);

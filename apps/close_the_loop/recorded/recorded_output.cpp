@@ -9,6 +9,7 @@
 #include "apps/close_the_loop/recorded/recorded_words.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/or_null.hpp"
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "version.hpp"
 
@@ -137,7 +138,7 @@ report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& opti
   page.facts({{"command", command_line},
               {"inputs", fmt::format("{}", fmt::join(options.diagnose.inputs, ", "))},
               {"output", diagnose::axis_label(options.diagnose.output, loop.unit)},
-              {"version", kVersion}});
+              {"made by", report::made_by()}});
   page.section("What is left on unseen records");
   for (const Judged& judged : loop.judged) {
     report::Table table;

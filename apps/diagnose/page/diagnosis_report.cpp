@@ -14,7 +14,6 @@
 #include "apps/libraries/report/plot/figure_table.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
-#include "version.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -38,8 +37,7 @@ Pairs facts_of(const Evidence& evidence, const std::vector<std::string>& recordi
   }
   const std::size_t order = found.baseline.model.body.order();
   Pairs facts{
-      {"date", report::provenance_of_this_call({}).date},
-      {"version", kVersion},
+      {"made by", report::made_by()},
       {"command line", report::command_line()},
       {"verdict", found.verdict()},
       {recordings.size() == 1 ? "recording" : "recordings, diagnosed together",

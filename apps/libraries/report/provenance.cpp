@@ -86,6 +86,8 @@ std::optional<Provenance> provenance_in(std::string_view json) {
   }
 }
 
+std::string made_by() { return fmt::format("stillhand {}, {}", kVersion, utc(seconds_now())); }
+
 std::string in_words(const Provenance& provenance) {
   std::vector<std::string> sources;
   for (const SourceFile& source : provenance.sources) {

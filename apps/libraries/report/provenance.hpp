@@ -30,6 +30,9 @@ struct Provenance {
 /// @throws std::runtime_error for a file that cannot be read
 Provenance provenance_of_this_call(const std::vector<std::filesystem::path>& sources);
 
+/// "stillhand 0.1.0, 2026-11-26T13:50:00Z": program and time of this call.
+std::string made_by();
+
 /// "2026-11-26T13:50:00Z"
 std::string utc(std::int64_t seconds_since_1970);
 

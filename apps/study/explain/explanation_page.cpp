@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "apps/study/explain/explanation_output.hpp"
 #include "apps/study/report_cells.hpp"
 #include "services/core/statistics/descriptive.hpp"
-#include "version.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -190,7 +190,7 @@ report::Page explanation_page(const Explanation& explanation, const std::string&
               {"subjects for each setting", std::to_string(explanation.options.subjects)},
               {"unit of the RMS error", number(explanation.options.unit_mm, 1) + " mm"},
               {"computed in", number(explanation.wall_s, 0) + " s"},
-              {"version", kVersion},
+              {"made by", report::made_by()},
               {"command line", command_line}});
   add_verdict(page, explanation);
   page.section("Before and after");

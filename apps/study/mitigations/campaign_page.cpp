@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "apps/study/mitigations/campaign_output.hpp"
-#include "version.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -161,7 +161,7 @@ report::Page campaign_page(const Campaign& campaign, const std::string& command_
                                                 number(campaign.options.trial_s, 0))},
               {"processor time", number(campaign.processor_s, 0) + " s"},
               {"computed in", number(campaign.wall_s, 0) + " s"},
-              {"version", kVersion},
+              {"made by", report::made_by()},
               {"command line", command_line}});
   page.warning(
       "The people who are shaken and the models of them have one structure. The table compares "
