@@ -67,7 +67,7 @@ std::size_t next_participant(const Folder& folder) {
     const Progress progress = progress_of(folder, plan, read_journal(file), file.string());
     if (!progress.complete() && progress.excluded().empty()) return index;
   }
-  throw ConfigError(folder.path().string(), "every planned participant complete",
+  throw ConfigError(folder.path().string(), "every planned participant complete or excluded",
                     "nothing more to run: `stillhand experiment status`");
 }
 
@@ -76,8 +76,7 @@ int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtim
     throw ConfigError("--gamepad", lab.gamepad.empty() ? "nothing" : lab.gamepad.string(),
                       "a device where experiment.yaml has operator: gamepad, and none elsewhere");
   }
-  if (folder.participants().empty()) folder.register_design();
-  std::filesystem::create_directories(folder.participant(index));
+  folder.open_participant(index);
   Journal journal(folder.journal(index));
   const Plan plan = folder.plan(index);
   Progress progress = progress_of(folder, plan, journal.entries(), folder.journal(index).string());

@@ -96,7 +96,9 @@ int show_status(const Typed& typed) {
 
 void exclude(const Typed& typed) {
   const Folder folder(typed.folder);
-  Journal journal(folder.journal(folder.with_session(typed.participant)));
+  const std::size_t index = participant_index(typed.participant, folder.design().participants);
+  folder.open_participant(index);  // of a person who never came
+  Journal journal(folder.journal(index));
   journal.append({.kind = EntryKind::kExcluded, .text = typed.reason});
 }
 

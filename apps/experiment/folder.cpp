@@ -207,6 +207,11 @@ void Folder::register_design() const {
   write_whole(path_ / kDigestFile, lines);
 }
 
+void Folder::open_participant(std::size_t index) const {
+  if (participants().empty()) register_design();
+  std::filesystem::create_directories(participant(index));
+}
+
 void make_folder(const std::filesystem::path& path, Design design, std::uint64_t order_seed) {
   std::error_code error;
   if (std::filesystem::exists(path) && !std::filesystem::is_empty(path, error)) {

@@ -52,6 +52,8 @@ class Folder {
   /// Writes the digests of experiment.yaml and of the model of condition C+ as they are now: before
   /// the first participant.
   void register_design() const;
+  /// Makes the participant's folder; registers the design first if nobody has one.
+  void open_participant(std::size_t index) const;
 
  private:
   std::filesystem::path path_;
