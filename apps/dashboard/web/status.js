@@ -45,10 +45,10 @@ function ended({ active, watch }, state) {
   return state === "ending" ? "; the session is over" : "; back now";
 }
 
-function stripOfAlarms(alarms, state, now) {
+function stripOfAlarms(alarms, state, now, where) {
   const first = alarms[0];
   const others = alarms.length > 1 ? `; ${alarms.length - 1} more` : "";
-  strip(first.level, WORDS[first.level], what(first) + ended(first, state) + others, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
+  strip(first.level, WORDS[first.level], what(first) + ended(first, state) + others + where, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
 }
 
 // Adds the QoS mismatches, which have no threshold and cannot be acknowledged. Not every snapshot holds the graph.
@@ -74,6 +74,7 @@ export function showStatus(snapshot) {
   const past = recording || session.replayed === true;
   element("acknowledge").disabled = past || !alarms.some((alarm) => !alarm.acknowledged);
   element("acknowledge").hidden = past;
+  element("strip").dataset.past = past;
   const title = recording ? `recording ${snapshot.file}` : `domain ${snapshot.domain}, rig ${snapshot.rig}`;
   const shown = alarmsOfNow(snapshot);
   const second = snapshot.events.find(({ kind, at_ms: at }) => kind === "second writer" && now - at < SECOND_WRITER_SHOWN_MS);
@@ -88,7 +89,7 @@ export function showStatus(snapshot) {
   } else if (second !== undefined) {
     strip("critical", "Second writer", `${second.peer} also writes ${short(second.topic)}: nobody listens to it, and the interlock opens`, `since ${clock(second.at_ms)}\n${span(now - second.at_ms)} ago`);
   } else if (shown.length > 0) {
-    stripOfAlarms(shown, session.state, now);
+    stripOfAlarms(shown, session.state, now, recording ? `; ${title}` : "");
   } else if (session.state === "running" || session.state === "paused") {
     const paused = session.state === "paused" || session.paused ? "no trial begins until Start is pressed; " : "";
     const before = alarms.length > 0 ? `; ${alarms.length} earlier alarm${alarms.length === 1 ? "" : "s"}` : "";

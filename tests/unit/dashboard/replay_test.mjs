@@ -32,6 +32,12 @@ test("a replay says REPLAY and not the emergency of then", () => {
   assert.equal(node("acknowledge").hidden, true);
 });
 
+test("the strip of a recording names the file next to an alarm", () => {
+  showStatus({ ...snapshot({ emergency: false }), mode: "recording", file: "session.mcap" });
+  assert.equal(node("strip").dataset.past, true);
+  assert.match(node("what").textContent, /sensing.*; recording session\.mcap$/);
+});
+
 test("a replay offers no action, and no emergency stop", () => {
   const sut = new Actions();
   sut.show(snapshot({ replayed: true }));
