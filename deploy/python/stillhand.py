@@ -62,12 +62,15 @@ def _run(*words):
 
 
 def verb(name, *words, **options):
-    """Runs a verb that takes --json and returns its result; `min_hz=1` stands for `--min-hz 1`, True for a flag.
+    """Runs a verb that takes --json and returns its result; `min_hz=1` stands for `--min-hz 1`, True for a flag, a list
+    for the words of one option: `map=["time=t [s]", "acc=a_y [g]", "force=f [N]"]`.
 
     Raises StillhandError where the verb refuses.
     """
     for option, value in options.items():
-        words += (f"--{option.replace('_', '-')}",) if value is True else (f"--{option.replace('_', '-')}", value)
+        words += (f"--{option.replace('_', '-')}",)
+        if value is not True:
+            words += tuple(value) if isinstance(value, (list, tuple)) else (value,)
     return json.loads(_run(name, *words, "--json", "-"))
 
 
