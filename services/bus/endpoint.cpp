@@ -76,6 +76,10 @@ void Endpoint::note_incompatible(std::uint32_t policy) {
   note_incident(BusIncident::Kind::kIncompatibleQos, "", 0.0, policy_name(policy));
 }
 
+std::string Endpoint::sole_writer() const {
+  return topic_.writers.size() == 1 ? std::string(topic_.writers.front()) : "";
+}
+
 void Endpoint::note_incident(BusIncident::Kind kind, const std::string& peer, double by_us,
                              const char* policy) const {
   if (!options_.on_incident) return;
@@ -171,10 +175,11 @@ void ReaderEndpoint::supervise(Tick tick, std::int64_t sent_ns, std::int64_t arr
   const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
   const auto verdict = monitor_.step(tick, difference_ns(sent_ns, ahead_ns), arrived_ns);
   if (verdict.lost > 0) {
-    note_incident(BusIncident::Kind::kTicksLost, "", static_cast<double>(verdict.lost));
+    note_incident(BusIncident::Kind::kTicksLost, sole_writer(), static_cast<double>(verdict.lost));
   }
   if (verdict.late_by_us > 0) {
-    note_incident(BusIncident::Kind::kCycleMissed, "", static_cast<double>(verdict.late_by_us));
+    note_incident(BusIncident::Kind::kCycleMissed, sole_writer(),
+                  static_cast<double>(verdict.late_by_us));
   }
   // A tenth of a second between snapshots: percentiles cost 200 additions.
   if (monitor_.samples() % 100 == 0) {
@@ -217,7 +222,8 @@ void ReaderEndpoint::on_requested_deadline_missed(
   if (!supervising_.load(std::memory_order_relaxed) || !has_living_writer()) return;
   deadline_misses_.fetch_add(status.total_count_change, std::memory_order_relaxed);
   const std::int64_t silent_ns = monotonic_ns() - last_arrival_ns_.load(std::memory_order_relaxed);
-  note_incident(BusIncident::Kind::kDeadlineMissed, "", static_cast<double>(silent_ns) * 1e-3);
+  note_incident(BusIncident::Kind::kDeadlineMissed, sole_writer(),
+                static_cast<double>(silent_ns) * 1e-3);
 }
 
 // The timer is armed by a sample, so without any word of liveliness (Peers::note_sample) a writer

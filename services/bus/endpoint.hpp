@@ -53,6 +53,9 @@ class Endpoint {
   void note_incompatible(std::uint32_t policy);
   void note_incident(BusIncident::Kind kind, const std::string& peer, double by_us,
                      const char* policy = "") const;
+  /// The service that writes the topic, by the catalogue; empty: there are several.  Its name fits
+  /// into the string itself, so nothing is allocated.
+  [[nodiscard]] std::string sole_writer() const;
   [[nodiscard]] std::uint32_t matched_count() const;
 
   const topics::Topic& topic_;
