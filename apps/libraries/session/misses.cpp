@@ -239,7 +239,12 @@ void add_gaps(const Stream& stream, std::int64_t least_ns, std::vector<Gap>& gap
     Gap gap{&stream, before.at_ns + kTick_ns / 2, after.at_ns, misses.size()};
     if (const Gap* cause = inherited(gap, gaps); cause != nullptr) {
       gap.miss = cause->miss;
-      if (gap.miss != kRecordings) misses[gap.miss].waited.push_back(stream.process());
+      if (gap.miss != kRecordings) {
+        std::vector<std::string>& waited = misses[gap.miss].waited;
+        if (std::ranges::find(waited, stream.process()) == waited.end()) {
+          waited.push_back(stream.process());
+        }
+      }
     } else if (is_recordings(stream, before, after)) {
       gap.miss = kRecordings;
     } else {
