@@ -7,6 +7,19 @@
 
 namespace stillhand::dashboard {
 
+namespace {
+
+bool counts_more(const Mark& one, const Mark& held) {
+  if (one.level != held.level) return one.level > held.level;
+  if (one.waits_for == held.waits_for) return one.amount > held.amount;
+  const bool first = one.waits_for < held.waits_for;
+  const double cause = first ? one.amount : held.amount;
+  const double other = first ? held.amount : one.amount;
+  return (cause >= 0.5 * other) == first;
+}
+
+}  // namespace
+
 void Timeline::mark(MarkKind kind, Mark mark) {
   const std::int64_t length_ns = std::max<std::int64_t>(difference_ns(end_ns_, begin_ns_), kParts);
   const std::int64_t since_ns = difference_ns(mark.at_ns, begin_ns_);
@@ -16,8 +29,7 @@ void Timeline::mark(MarkKind kind, Mark mark) {
   Mark& held = place->second;
   mark.count += held.count;
   mark.at_ns = std::min(mark.at_ns, held.at_ns);
-  const bool worse = std::pair(mark.level, mark.amount) > std::pair(held.level, held.amount);
-  if (worse) {
+  if (counts_more(mark, held)) {
     held = std::move(mark);
   } else {
     held.count = mark.count;

@@ -25,6 +25,9 @@ struct Mark {
   std::string subject;  ///< topic or process; as the next two of the worst
   std::string what;     ///< an alarm's watch, an event's kind; empty for kLate and kLost
   double amount = 0.0;  ///< [ms], or [ticks] of kLost, or the watch's unit
+  /// [-] samples that this one waits for, from the rig's on.  Of two of one level that fall
+  /// together the one with fewer is the cause, if it has half of the other's amount.
+  int waits_for = 0;
 };
 
 /// From the first to the last measured tick of a trial, by the listener's clock.

@@ -85,6 +85,17 @@ void RecordedRun::keep(const Playing& playing, std::int64_t next_ns) {
   if (difference_ns(playing.at_ns, since_ns) >= apart_ns) kept_.push_back(playing);
 }
 
+namespace {
+
+// Samples between the rig's and this one, along the loop.
+int waits_for(const topics::Topic& topic) {
+  if (&topic == &topics::kRawSample || &topic == &topics::kRigTruth) return 0;
+  if (&topic == &topics::kSensed) return 1;
+  return &topic == &topics::kOperatorForce ? 3 : 2;
+}
+
+}  // namespace
+
 void RecordedRun::note(const Heard& heard, const MessageFeed& feed, std::int64_t at_ns) {
   if (heard.topic == nullptr) return;
   const Config& config = feed.options().config;
@@ -98,7 +109,8 @@ void RecordedRun::note(const Heard& heard, const MessageFeed& feed, std::int64_t
   if (heard.verdict.sent_late_ns > 0) {
     const double late_ms = static_cast<double>(heard.verdict.sent_late_ns) / kNsPerMs;
     const Threshold threshold{config.late_warning_ms, config.late_critical_ms};
-    timeline_.mark(MarkKind::kLate, {at_ns, threshold.level_of(late_ms), 1, topic, "", late_ms});
+    timeline_.mark(MarkKind::kLate, {at_ns, threshold.level_of(late_ms), 1, topic, "", late_ms,
+                                     waits_for(*heard.topic)});
   }
   if (heard.topic == &topics::kSensed) {
     timeline_.tick(feed.newest_tick(), at_ns);

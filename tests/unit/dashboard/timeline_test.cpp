@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <tuple>
 
 namespace stillhand::dashboard {
 namespace {
@@ -47,6 +48,22 @@ TEST_F(TimelineTest, WhatFallsTogetherIsOneMarkAtTheFirstThatTellsTheWorst) {
   EXPECT_EQ(marks[0].count, 3u);
   EXPECT_EQ(marks[0].subject, "raw_sample");
   EXPECT_EQ(marks[0].level, Level::kCritical);
+}
+
+// Whoever waits is late by a little more.  A small lateness of the rig is no cause of a long one.
+TEST_F(TimelineTest, OfWhatFallsTogetherTheCauseIsShown) {
+  const auto shown = [this](std::int64_t at_ms, double rig_ms) {
+    for (const auto& [topic, late_ms, waits_for] :
+         {std::tuple("force", 78.0, 3), std::tuple("raw", rig_ms, 0), std::tuple("sensed", 73.0, 1),
+          std::tuple("command", 75.0, 2)}) {
+      Mark each = mark(at_ms, Level::kCritical, late_ms, topic);
+      each.waits_for = waits_for;
+      sut_.mark(MarkKind::kLate, each);
+    }
+    return sut_.marks(MarkKind::kLate).back().subject;
+  };
+  EXPECT_EQ(shown(510, 4.0), "sensed");
+  EXPECT_EQ(shown(610, 72.0), "raw");
 }
 
 TEST_F(TimelineTest, HoldsABoundedNumberOfMarksWhateverTheirTimes) {
