@@ -36,6 +36,7 @@ const std::vector<Door>& overview() {
        {{"lab", "run a whole session: identify, run the conditions, compute the results"},
         {"calibrate", "find the scales and signs of real devices"},
         {"dashboard", "watch a session or a recording in a browser"},
+        {"ros2-bridge", "publish a running session for ROS 2"},
         {"stop", "stop every session of this machine at once"},
         {"deploy", "write and check the files of a lab of several machines"}}},
       {"An experiment with people",

@@ -24,6 +24,7 @@
 #include "apps/record/record_command.hpp"
 #include "apps/recordings/recorder_commands.hpp"
 #include "apps/replay/replay_command.hpp"
+#include "apps/ros2_bridge/ros2_bridge_command.hpp"
 #include "apps/stillhand/help.hpp"
 #include "apps/stop/stop_command.hpp"
 #include "apps/study/study_command.hpp"
@@ -69,6 +70,7 @@ int run(int argc, char** argv) {
     stillhand::misses::add_misses_command(cli, status);
     stillhand::record::add_record_command(cli, status);
     stillhand::replay::add_replay_command(cli, status);
+    stillhand::ros2_bridge::add_ros2_bridge_command(cli, status);
     stillhand::dashboard::add_dashboard_command(cli, status);
     stillhand::calibrate::add_calibrate_command(cli, status);
     stillhand::stop::add_stop_command(cli, status);

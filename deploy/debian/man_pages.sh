@@ -27,7 +27,7 @@ page() {  # page PROGRAM [VERB...]
       s/^\.TH [^ ]*/.TH ${name^^}/
       s/^$program /${name//-/\\\\-} /
     }" | gzip -9n >"$out/$name.1.gz"
-  for verb in $(sed -n '/^Subcommands:/,$ s/^  \([a-z-]\{1,\}\) .*/\1/p' <<<"$help"); do
+  for verb in $(sed -n '/^Subcommands:/,$ s/^  \([a-z0-9-]\{1,\}\) .*/\1/p' <<<"$help"); do
     page "$program" "$@" "$verb"
   done
 }

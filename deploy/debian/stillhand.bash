@@ -6,7 +6,7 @@ _stillhand() {
   local -a path=()
   for next in "${COMP_WORDS[@]:1:COMP_CWORD-1}" ""; do
     help=$("${COMP_WORDS[0]}" "${path[@]}" --help 2>/dev/null) || return
-    words=$(sed -n '/^Subcommands:/,$ s/^  \([a-z-]\{1,\}\) .*/\1/p' <<<"$help")
+    words=$(sed -n '/^Subcommands:/,$ s/^  \([a-z0-9-]\{1,\}\) .*/\1/p' <<<"$help")
     [[ -n $next && " ${words//$'\n'/ } " == *" $next "* ]] || break
     path+=("$next")
   done

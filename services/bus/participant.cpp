@@ -89,6 +89,17 @@ ConfigError missing_profile(const std::filesystem::path& profiles, const char* k
           "a profile named \"" + std::string(name) + "\""};
 }
 
+edds::DomainParticipant* create_participant(std::uint32_t domain,
+                                            const edds::DomainParticipantQos& qos,
+                                            DiscoveryListener* listener) {
+  static DiscoveryListener quiet;  // none would let type objects through: fast_dds/v2/discovery.hpp
+  auto* participant = edds::DomainParticipantFactory::get_instance()->create_participant(
+      domain, qos, listener != nullptr ? listener : &quiet, edds::StatusMask::none());
+  if (participant != nullptr) return participant;
+  throw BusError("Fast DDS created no participant on domain " + std::to_string(domain) +
+                 ": are its UDP ports free?");
+}
+
 edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
                                             std::uint32_t domain, const std::string& name,
                                             bool marked, const Identity& identity,
@@ -104,7 +115,7 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   if (!ok(factory->get_participant_qos_from_profile("stillhand_participant", qos))) {
     throw missing_profile(profiles, "participant", "stillhand_participant");
   }
-  check_surroundings(qos, profiles);
+  check_surroundings(qos, profiles.string() + ": interfaceWhiteList");
   qos.name(name);
   if (marked) qos.user_data().data_vec(replay_mark());
   if (!identity.none()) {
@@ -112,13 +123,7 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   } else if (adapt) {
     adapt(qos);
   }
-  static DiscoveryListener quiet;  // none would let type objects through: fast_dds/v2/discovery.hpp
-  auto* participant = factory->create_participant(
-      domain, qos, listener != nullptr ? listener : &quiet, edds::StatusMask::none());
-  if (participant == nullptr) {
-    throw BusError("Fast DDS created no participant on domain " + std::to_string(domain) +
-                   ": are its UDP ports free?");
-  }
+  auto* participant = create_participant(domain, qos, listener);
   if (!identity.none() && !is_secured(*participant, identity)) {
     factory->delete_participant(participant);
     throw BusError("Fast DDS created a participant without the security of " +

@@ -31,6 +31,11 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
                                             DiscoveryListener* listener,
                                             const AdaptQos& adapt = {});
 
+/// A participant of this QoS.  @param listener  optional  @throws BusError when DDS refuses
+edds::DomainParticipant* create_participant(std::uint32_t domain,
+                                            const edds::DomainParticipantQos& qos,
+                                            DiscoveryListener* listener);
+
 /// The error of a profile file that lacks one.
 ConfigError missing_profile(const std::filesystem::path& profiles, const char* kind,
                             std::string_view name);

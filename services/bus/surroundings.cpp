@@ -47,7 +47,7 @@ void check_environment(const edds::DomainParticipantQos& qos) {
   }
 }
 
-void check_addresses(const edds::DomainParticipantQos& qos, const std::filesystem::path& profiles) {
+void check_addresses(const edds::DomainParticipantQos& qos, const std::string& where) {
   const auto own = interfaces();
   for (const auto& transport : qos.transport().user_transports) {
     const auto* udp = dynamic_cast<const ertps::UDPv4TransportDescriptor*>(transport.get());
@@ -56,7 +56,7 @@ void check_addresses(const edds::DomainParticipantQos& qos, const std::filesyste
       // A lo that is down keeps its address to itself: the list does not have it.
       const auto found = own.find(address);
       if (found != own.end() && (found->second.second & IFF_UP) != 0U) continue;
-      throw ConfigError(profiles.string() + ": interfaceWhiteList",
+      throw ConfigError(where,
                         found == own.end()
                             ? address + ", which no interface of this machine has"
                             : address + " of " + found->second.first + ", which is down",
@@ -67,10 +67,9 @@ void check_addresses(const edds::DomainParticipantQos& qos, const std::filesyste
 
 }  // namespace
 
-void check_surroundings(const edds::DomainParticipantQos& qos,
-                        const std::filesystem::path& profiles) {
+void check_surroundings(const edds::DomainParticipantQos& qos, const std::string& where) {
   check_environment(qos);
-  check_addresses(qos, profiles);
+  check_addresses(qos, where);
 }
 
 }  // namespace stillhand::runtime

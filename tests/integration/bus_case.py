@@ -12,6 +12,11 @@ import lab_process
 from lab_process import STILLHAND, next_domain
 
 LIMIT_S = 60.0
+# As the profiles: loopback alone, and its multicast for discovery.
+CYCLONE_URI = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface address='127.0.0.1' multicast='true'/>"
+               "</Interfaces></General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+               "<MaxAutoParticipantIndex>31</MaxAutoParticipantIndex><Peers><Peer Address='127.0.0.1'/></Peers>"
+               "</Discovery></Domain></CycloneDDS>")
 
 
 def stillhand(*words):

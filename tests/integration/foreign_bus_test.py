@@ -11,18 +11,13 @@ import subprocess
 import unittest
 
 import lab_process
-from bus_case import LIMIT_S, Bus, stillhand
+from bus_case import CYCLONE_URI, LIMIT_S, Bus, stillhand
 from lab_process import BUILD, STILLHAND, next_domain
 
 IDL = pathlib.Path(__file__).resolve().parent / "foreign" / "plant.idl"
 FAST_DDS = BUILD / "tests" / "plant_writer"
 CYCLONE = BUILD / "tests" / "plant_cyclone"
 COMPARE = BUILD / "tests" / "compare_messages"
-# As the profiles: loopback alone, and its multicast for discovery.
-CYCLONE_URI = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface address='127.0.0.1' multicast='true'/>"
-               "</Interfaces></General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
-               "<MaxAutoParticipantIndex>31</MaxAutoParticipantIndex><Peers><Peer Address='127.0.0.1'/></Peers>"
-               "</Discovery></Domain></CycloneDDS>")
 COUNT = 60
 PATTERNS = ["--topics", "plant/*", "--topics", "rt/*"]
 

@@ -79,7 +79,7 @@ def output_of(*words):
 
 def verbs_in(text):
     """The verbs that a help text lists."""
-    return set(re.findall(r"^  ([a-z-]+) ", text.partition("\nSubcommands:\n")[2], re.M))
+    return set(re.findall(r"^  ([a-z0-9-]+) ", text.partition("\nSubcommands:\n")[2], re.M))
 
 
 class Packages:

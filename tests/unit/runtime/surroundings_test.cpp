@@ -25,7 +25,7 @@ edds::DomainParticipantQos on(const std::string& address) {
 }
 
 std::string refusal(const edds::DomainParticipantQos& qos) {
-  return support::refusal([&] { check_surroundings(qos, "profiles.xml"); });
+  return support::refusal([&] { check_surroundings(qos, "profiles.xml: interfaceWhiteList"); });
 }
 
 TEST(SurroundingsTest, LoopbackIsThere) { EXPECT_EQ(refusal(on("127.0.0.1")), "accepted"); }

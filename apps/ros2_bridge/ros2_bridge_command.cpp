@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/ros2_bridge/ros2_bridge_command.hpp"
+
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "apps/libraries/ros2/converter.hpp"
+#include "apps/ros2_bridge/ros2_bridge.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/files/recording/within.hpp"
+#include "services/files/settings/repeatable.hpp"
+#include "services/system/process/domain.hpp"
+#include "services/system/process/shipped.hpp"
+
+namespace stillhand::ros2_bridge {
+namespace {
+
+int run(const BridgeOptions& options) {
+  for (const std::string& pattern : options.topics) {
+    const recording::TopicFilter filter{{pattern}, {}};
+    if (std::ranges::any_of(ros2::sources(), [&](auto topic) { return filter.wants(topic); })) {
+      continue;
+    }
+    throw ConfigError("--topics", pattern,
+                      fmt::format("one of {}, or a pattern", fmt::join(ros2::sources(), ", ")));
+  }
+  runtime::Stop stop;
+  return run_bridge(options, stop);
+}
+
+}  // namespace
+
+void add_ros2_bridge_command(CLI::App& cli, int& status) {
+  auto options = std::make_shared<BridgeOptions>();
+  options->profiles = runtime::shipped("qos/profiles.xml");
+  CLI::App* verb = cli.add_subcommand(
+      "ros2-bridge",
+      "Publishes a running session for ROS 2: sensor_msgs/Imu, geometry_msgs/WrenchStamped,\n"
+      "sensor_msgs/JointState and so on, the topics of `export --ros2bag`. It only listens to\n"
+      "the session: none waits for it, and nothing from ROS 2 comes in. It needs no ROS 2, and\n"
+      "ends with Ctrl-C. It reaches this machine's loopback alone until --ros-address names\n"
+      "another interface.\n"
+      "Example: stillhand ros2-bridge --topics stillhand/sensed, then `ros2 topic echo "
+      "/rig_1/imu`");
+  settings::repeatable(verb->add_option("--topics", options->topics,
+                                        "pattern of topics of the session to publish (* any run "
+                                        "of characters, ? one); may be repeated"));
+  verb->add_flag("--replay", options->replay,
+                 "publish what `stillhand replay` plays, in the place of a session");
+  verb->add_option("--domain", options->domain, "DDS domain of the session")
+      ->check(recording::within(0.0, runtime::kMaxDomain))
+      ->capture_default_str();
+  verb->add_option("--ros-domain", options->ros_domain, "domain of ROS 2")
+      ->envname("ROS_DOMAIN_ID")
+      ->check(recording::within(0.0, runtime::kMaxDomain))
+      ->capture_default_str();
+  settings::repeatable(verb->add_option("--ros-address", options->addresses,
+                                        "address of this machine on which ROS 2 is reached; may "
+                                        "be repeated; without it 127.0.0.1"));
+  verb->add_option("--profiles", options->profiles, "QoS profiles of the session")
+      ->capture_default_str();
+  verb->add_option("--security", options->security,
+                   "folder of certificates for a secured domain; what ROS 2 gets is not secured");
+  verb->callback([options, &status] { status = run(*options); });
+}
+
+}  // namespace stillhand::ros2_bridge
