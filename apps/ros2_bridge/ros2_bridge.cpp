@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/ros2_bridge/ros2_bridge.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -66,9 +66,12 @@ class Waiting {
 class Published {
  public:
   explicit Published(const BridgeOptions& options)
-      : writers_(options.ros_domain, "stillhand_ros2_bridge",
-                 options.addresses.empty() ? std::vector<std::string>{"127.0.0.1"}
-                                           : options.addresses) {}
+      : writers_(options.ros_domain, "stillhand_ros2_bridge", addresses(options)) {
+    fmt::print("domain {} of ROS 2, on {}{}\n", options.ros_domain,
+               fmt::join(addresses(options), ", "),
+               options.addresses.empty() ? ": nodes with default settings need --ros-address" : "");
+    std::fflush(stdout);
+  }
 
   void write(const ros2::Message& message) {
     auto found = topics_.find(message.topic);
@@ -95,6 +98,13 @@ class Published {
   [[nodiscard]] bool empty() const { return topics_.empty(); }
 
  private:
+  // Always the loopback too: Fast DDS sends there what is for an address of its own machine.
+  static std::vector<std::string> addresses(const BridgeOptions& options) {
+    std::vector<std::string> all{"127.0.0.1"};
+    all.insert(all.end(), options.addresses.begin(), options.addresses.end());
+    return all;
+  }
+
   struct Topic {
     std::size_t writer;
     std::string type;

@@ -13,7 +13,7 @@ namespace stillhand::ros2_bridge {
 
 struct BridgeOptions {
   std::vector<std::string> topics;     ///< patterns of topics of the session; empty: all
-  std::vector<std::string> addresses;  ///< on which ROS 2 is reached; empty: the loopback
+  std::vector<std::string> addresses;  ///< on which ROS 2 is reached, besides the loopback
   bool replay = false;                 ///< of a replay alone, in the place of a session
   std::uint32_t domain = 0;
   std::uint32_t ros_domain = 0;

@@ -41,8 +41,8 @@ void add_ros2_bridge_command(CLI::App& cli, int& status) {
       "Publishes a running session for ROS 2: sensor_msgs/Imu, geometry_msgs/WrenchStamped,\n"
       "sensor_msgs/JointState and so on, the topics of `export --ros2bag`. It only listens to\n"
       "the session: none waits for it, and nothing from ROS 2 comes in. It needs no ROS 2, and\n"
-      "ends with Ctrl-C. It reaches this machine's loopback alone until --ros-address names\n"
-      "another interface.\n"
+      "ends with Ctrl-C. Nodes with ROS 2's default settings are reached once --ros-address names\n"
+      "the address of this machine's network; without it, nodes on the loopback alone.\n"
       "Example: stillhand ros2-bridge --topics stillhand/sensed, then `ros2 topic echo "
       "/rig_1/imu`");
   settings::repeatable(verb->add_option("--topics", options->topics,
@@ -58,8 +58,8 @@ void add_ros2_bridge_command(CLI::App& cli, int& status) {
       ->check(recording::within(0.0, runtime::kMaxDomain))
       ->capture_default_str();
   settings::repeatable(verb->add_option("--ros-address", options->addresses,
-                                        "address of this machine on which ROS 2 is reached; may "
-                                        "be repeated; without it 127.0.0.1"));
+                                        "address of this machine on which ROS 2 is reached, "
+                                        "besides 127.0.0.1; may be repeated"));
   verb->add_option("--profiles", options->profiles, "QoS profiles of the session")
       ->capture_default_str();
   verb->add_option("--security", options->security,

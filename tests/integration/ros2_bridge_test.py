@@ -132,7 +132,7 @@ class Ros2BridgeTest(Bus):
         self.play(self.first)
         hanging, running = self.readers(bridge, "reliable", "reliable")
         hanging.send_signal(signal.SIGSTOP)
-        # More than the buffers on the way and the ten messages of a writer: 14,000 messages.
+        # More than the buffers on the way and the ten messages of a writer hold: 14,000 messages.
         self.play(LONG, "--rate", 2)
         self.play(self.second, "--rate", 0.1)
         self.assert_last(running, self.second)
