@@ -41,6 +41,7 @@ class Bag {
     recording::McapWriterOptions options;
     options.library = std::string("stillhand ") + kVersion;
     options.profile = "ros2";
+    options.first_channel = 1;  // the Python package rosbags passes over a channel 0
     return options;
   }
 

@@ -42,6 +42,12 @@ TEST_F(Ros2BagTest, ASensedSampleIsAnImuAWrenchAndAJointWithYToTheLeft) {
   EXPECT_THAT(row_of(path("tables/x_rig_1_imu.csv"), 61), EndsWith(",0,0.5,0,0,0,0,0,0,0,0,0,0"));
 }
 
+TEST_F(Ros2BagTest, NoChannelHasTheNumberThatRosbagsPassesOver) {
+  write_sample(path("a.mcap"));
+  write_ros2_bag(path("a.mcap"), path("bag.mcap"));
+  EXPECT_EQ(OpenRecording(path("bag.mcap")).reader.channels().begin()->first, 1);
+}
+
 TEST_F(Ros2BagTest, WhatAReplayWroteIsLeftOut) {
   write_two_writers(path("a.mcap"), {{"replayed", "true"}});
   const Ros2Bag bag = write_ros2_bag(path("a.mcap"), path("bag.mcap"));

@@ -51,8 +51,9 @@ SchemaId McapWriter::add_schema(std::string name, std::string encoding, std::str
 
 ChannelId McapWriter::add_channel(std::string topic, SchemaId schema_id,
                                   std::string message_encoding, TextMap metadata) {
-  STILLHAND_EXPECTS(!closed_ && channels_.size() < kMaxIds && schema_id <= schemas_.size());
-  const auto id = static_cast<ChannelId>(channels_.size());
+  STILLHAND_EXPECTS(!closed_ && channels_.size() + options_.first_channel < kMaxIds &&
+                    schema_id <= schemas_.size());
+  const auto id = static_cast<ChannelId>(channels_.size() + options_.first_channel);
   ChannelState& state = channels_.emplace_back();
   state.channel = {id, schema_id, std::move(topic), std::move(message_encoding),
                    std::move(metadata)};
@@ -76,7 +77,8 @@ void McapWriter::define(ChannelState& state) {
 
 Status McapWriter::write(ChannelId channel, std::uint32_t sequence, std::uint64_t log_time_ns,
                          std::uint64_t publish_time_ns, std::span<const std::byte> message) {
-  STILLHAND_EXPECTS(channel < channels_.size());
+  const std::size_t place = std::size_t{channel} - options_.first_channel;
+  STILLHAND_EXPECTS(place < channels_.size());
   if (!status_.ok()) return status_;
   if (closed_) return Status::failure(StatusKind::kClosed, "recording is closed");
   if (message.size() > kMaxMessageBytes) {
@@ -84,7 +86,7 @@ Status McapWriter::write(ChannelId channel, std::uint32_t sequence, std::uint64_
                                                       " bytes, at most " +
                                                       std::to_string(kMaxMessageBytes));
   }
-  ChannelState& state = channels_[channel];
+  ChannelState& state = channels_[place];
   define(state);
   state.chunk_entries.emplace_back(log_time_ns, chunk_.size());
   put(chunk_, static_cast<std::uint8_t>(Opcode::kMessage));

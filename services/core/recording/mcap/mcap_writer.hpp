@@ -20,6 +20,7 @@ struct McapWriterOptions {
   Compression compression = Compression::kZstd;
   std::string library = "stillhand";
   std::string profile = kProfile;
+  ChannelId first_channel = 0;  ///< the others count on
 };
 
 /// Writes one MCAP file as FORMAT.md describes.  It collects messages in a chunk and writes the
