@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/identify/changed_output.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
@@ -56,6 +57,89 @@ std::string why_clipped(const Measurement& measurement, const IdentifyOptions& o
   return {};
 }
 
+// [-] of the squared error that a reading of the same prediction must leave at most.
+constexpr double kBetterReading = 0.5;
+
+// What the paper's fit to a record leaves of all of it; all, where there is none.
+double left_of_all(const identification::Record& record, const IdentifyOptions& options) {
+  try {
+    const auto fit = identification::fit_arx(record, static_cast<int>(options.config.order));
+    return 1.0 - 0.01 * identification::vaf_percent(
+                            record.force_n, signal::simulated(fit.model, record.acceleration_m_s2));
+  } catch (const ConfigError&) {
+    return 1.0;
+  }
+}
+
+// A part in which the input has another level, or the output another level or gain: a linear model
+// takes them for a body in between.  Empty: a model without that leaves as much.
+std::string why_stepped(const IdentifyOptions& options, const identification::Record& fitted,
+                        const std::vector<double>& predicted, double left,
+                        const IdentifyResult& result) {
+  for (const bool of_input : {false, true}) {
+    identification::Record mended = fitted;
+    std::vector<double>& y = of_input ? mended.acceleration_m_s2 : mended.force_n;
+    const Change found = change_of(y, of_input ? fitted.force_n : predicted);
+    // The force is no model of its input, but shows a level that it does not answer.
+    if (of_input ? !found.of_level : found.error_ratio >= kBetterReading) continue;
+    for (std::size_t i = found.first; i < found.end; ++i) {
+      y[i] = found.of_level ? y[i] - found.level : y[i] / found.gain;
+    }
+    const double least = left_of_all(mended, options);
+    if (!(least < kBetterReading * std::min(left, 1.0))) continue;
+    const std::string what =
+        found.of_level ? fmt::format("the mean of {} is {:.3g} {} higher",
+                                     of_input ? options.input : options.output,
+                                     of_input ? found.level / rms_about_mean(y) : found.level,
+                                     of_input ? "times its RMS" : result.output_unit)
+                       : fmt::format("{} has {:.3g} times the gain", options.output, found.gain);
+    return fmt::format(
+        "{} from {:.4g} to {:.4g} s of {:.4g} s, by a step or slowly: without that a model leaves "
+        "{:.3g} % of {}, this one {:.3g} %{}",
+        what, static_cast<double>(found.first) / fitted.rate_hz,
+        static_cast<double>(found.end) / fitted.rate_hz,
+        static_cast<double>(y.size()) / fitted.rate_hz, 100.0 * least, options.output, 100.0 * left,
+        of_input ? "" : "; diagnose has effects for it");
+  }
+  return {};
+}
+
+// A limit with noise on top, whose rows are not equal.
+std::string why_limited(const IdentifyOptions& options, const identification::Record& fitted,
+                        const std::vector<double>& predicted, const std::string& unit) {
+  const Limit limit = limit_of(fitted.force_n, predicted);
+  if (limit.share <= diagnosis::kMostClipped || limit.error_ratio >= kBetterReading) return {};
+  std::string ends;
+  for (const double end : {limit.low, limit.high}) {
+    if (std::isfinite(end)) ends += fmt::format("{}{:.3g}", ends.empty() ? "" : " and ", end);
+  }
+  return fmt::format(
+      "{} follows {} up to {} {}, and stays there in {:.3g} % of the rows: a limit, and the "
+      "model's "
+      "gain is wrong by about that; diagnose has effects for a limit",
+      options.output, options.input, ends, unit, 100.0 * limit.share);
+}
+
+// Levels, gains and limits that change what the whole record shows, and that the last quarter alone
+// need not show.  Empty: none.
+std::string why_changed(const IdentifyOptions& options, const identification::Record& fitted,
+                        const IdentifyResult& result) {
+  const auto predicted = signal::simulated(result.model.fit, fitted.acceleration_m_s2);
+  const double left = 1.0 - 0.01 * identification::vaf_percent(fitted.force_n, predicted);
+  // A gain that is wrong by a share leaves the square of it.
+  if (left < diagnosis::kMostClipped * diagnosis::kMostClipped) return {};
+  if (std::string why = why_stepped(options, fitted, predicted, left, result); !why.empty()) {
+    return why;
+  }
+  std::string why = why_limited(options, fitted, predicted, result.output_unit);
+  const double vaf = result.model.heldout.free_run_vaf_percent;
+  if (!why.empty() || left < 0.5 || vaf < 50.0) return why;
+  return fmt::format(
+      "{} explains {:.3g} % of {} in the last quarter, and {:.3g} % of the whole recording: a part "
+      "of it is another motion or another force",
+      options.input, vaf, options.output, 100.0 - 100.0 * left);
+}
+
 // The response of a motion to the force that it causes differentiates: least squares find no stable
 // one, and far more the other way round.  Empty: not so.
 std::string why_exchanged(const IdentifyOptions& options, const identification::Record& fitted,
@@ -104,6 +188,7 @@ std::string why_worthless(const Measurement& measurement, const IdentifyOptions&
       {options.input, result.input_unit, rms_about_mean(fitted.acceleration_m_s2), options.output,
        result.output_unit, std::sqrt(std::max(0.0, 1.0 - left)) * rms_about_mean(fitted.force_n)});
   if (left < 0.5 && !mass.empty()) return mass;
+  if (std::string why = why_changed(options, fitted, result); !why.empty()) return why;
   if (std::string why = why_exchanged(options, fitted, left); !why.empty()) return why;
   if (std::string why = why_future(options, fitted, left, result.model.refined); !why.empty())
     return why;

@@ -322,6 +322,20 @@ spoilt("A2", "acceleration in mm/s^2 as m/s^2", Unusable("unit"), acc=lambda x: 
 spoilt("A2", "columns exchanged", Unusable("swap"), acc=lambda x: FORCE, force=lambda x: ACC)
 spoilt("A2", "columns exchanged, the force in kN", Refused(("excitation",)), acc=lambda x: 1e-3 * FORCE,
        force=lambda x: ACC)
+for name, change, said in (
+        ("three times the gain in the second half", lambda x: numpy.r_[x[:3000], 3.0 * x[3000:]], "times the gain"),
+        ("a fifth more gain in the second half", lambda x: numpy.r_[x[:3000], 1.2 * x[3000:]], "times the gain"),
+        ("three times the gain for 10 s", lambda x: numpy.r_[x[:2000], 3.0 * x[2000:3000], x[3000:]], "times the gain"),
+        ("a gain that drifts from 1 to 3", lambda x: x * numpy.linspace(1.0, 3.0, ROWS), "times the gain"),
+        ("an offset of 20 N that steps in", lambda x: x + 20.0 * (TIME >= 30.0), "the mean of f"),
+        ("an offset of 0.5 N that steps in", lambda x: x + 0.5 * (TIME >= 30.0), "the mean of f"),
+        ("an offset of 20 N for 10 s", lambda x: x + 20.0 * ((TIME >= 20.0) & (TIME < 30.0)), "the mean of f"),
+        ("an offset that drifts to 10 N", lambda x: x + TIME / 6.0, "of the whole recording")):
+    spoilt("A2", name, Unusable(said), force=change)
+spoilt("A2", "a third of the acceleration's gain in the first half", Unusable("times the gain"),
+       acc=lambda x: numpy.r_[x[:3000] / 3.0, x[3000:]])
+spoilt("A2", "an offset of the acceleration that steps in", Unusable("the mean of a_y"),
+       acc=lambda x: x + (TIME >= 30.0))
 spoilt("A2", "the force with the other sign", Assumed("not the sign of a_y", -1.0), force=lambda x: -x)
 spoilt("A2", "the acceleration with the other sign", Assumed("not the sign of a_y", -1.0), acc=lambda x: -x)
 spoilt("A2", "acceleration in g as m/s^2", Assumed("units as the columns state", 9.80665), acc=lambda x: x / 9.80665)
@@ -341,6 +355,26 @@ spoilt("A3", "acceleration in straight lines from 25 Hz", Unusable(("a_y", "held
        acc=lambda x: numpy.interp(TIME, TIME[::4], x[::4]))
 spoilt("A3", "force in straight lines from 20 Hz", Unusable(("f", "held")),
        force=lambda x: numpy.interp(TIME, TIME[::5], x[::5]))
+spoilt("A3", "force in straight lines from 25 Hz", Unusable(("f", "held")),
+       force=lambda x: numpy.interp(TIME, TIME[::4], x[::4]))
+
+
+def noisy(change, share):
+    """Noise on top, `share` of the signal's deviation."""
+    return lambda x: change(x) + share * numpy.std(x) * numpy.random.default_rng(12).standard_normal(ROWS)
+
+
+for hz in (50, 30, 25, 10):
+    spoilt("A3", f"acceleration held at {hz} Hz behind a noise of 5 %", Unusable(("a_y", "held")),
+           acc=noisy(lambda x, hz=hz: x[(numpy.floor(TIME * hz + 1e-6) * RATE_HZ / hz).astype(int)], 0.05))
+spoilt("A3", "force held at 20 Hz behind a noise of 2 %", Unusable(("f", "held")), force=noisy(held(5), 0.02))
+spoilt("A3", "acceleration in straight lines from 25 Hz behind a noise of 3 %", Unusable(("a_y", "held")),
+       acc=noisy(lambda x: numpy.interp(TIME, TIME[::4], x[::4]), 0.03))
+spoilt("A3", "force in straight lines from 20 Hz behind a noise of 1 %", Unusable(("f", "held")),
+       force=noisy(lambda x: numpy.interp(TIME, TIME[::5], x[::5]), 0.01))
+for percent, noise in ((40, 0.01), (40, 0.2), (10, 0.05)):
+    spoilt("A3", f"force clipped in {percent} % of the rows, behind a noise of {noise:.0%}", Unusable("a limit"),
+           force=noisy(lambda x, beyond=percent / 200: x.clip(*numpy.quantile(x, [beyond, 1.0 - beyond])), noise))
 spoilt("A3", "force stuck for 3 s", Right(("f", "stuck")),
        force=lambda x: numpy.r_[x[:3000], [x[3000]] * 300, x[3300:]])
 spoilt("A3", "acceleration stuck for 0.5 s", Right(("a_y", "stuck")),
@@ -465,9 +499,9 @@ bagged("A6", "one in 10 is cut", Refused(("do not fit", "5 %")),
        messages=misfits(lambda n: n % 10 == 7, lambda d: d[:40]))
 bagged("A6", "the last 10 s are of another definition", Refused(("do not fit",)),
        messages=misfits(lambda n: n >= 5000, lambda d: d[:44]))
-bagged("A6", "one in 10 has bytes behind its members", Right(),
+bagged("A6", "one in 10 has bytes behind its members", Right("longer than"),
        messages=misfits(lambda n: n % 10 == 7, lambda d: d + bytes(8)))
-bagged("A6", "every message has a member more", Right(), messages=misfits(lambda n: True, lambda d: d + bytes(24)))
+bagged("A6", "every message has a member more", Right("longer than"), messages=misfits(lambda n: True, lambda d: d + bytes(24)))
 bagged("A6", "values that are not finite", Refused(("inf in f",)),
        messages=misfits(lambda n: n % 10 == 7, lambda d: d[:28] + struct.pack("<d", float("inf")) + d[36:]))
 bagged("A6", "2 s without a message of one topic", Right("gap"),

@@ -99,6 +99,21 @@ inline void hold(Values& values, double rows) {
   }
 }
 
+inline void add_noise(Values& values, double size) {
+  Dice dice;
+  for (double& value : values) value += size * (dice.next() - 0.5);
+}
+
+/// Straight lines between every so many of the values.
+inline void draw_lines(Values& values, std::size_t rows) {
+  const Values from = values;
+  for (std::size_t n = 0; n + rows < values.size(); ++n) {
+    const std::size_t knot = n / rows * rows;
+    values[n] = from[knot] + static_cast<double>(n % rows) / static_cast<double>(rows) *
+                                 (from[knot + rows] - from[knot]);
+  }
+}
+
 inline void fill(Values& values, std::size_t first, std::size_t end, double with) {
   for (std::size_t n = first; n < end; ++n) values[n] = with;
 }
@@ -220,12 +235,23 @@ inline const std::vector<Case>& cases() {
       {"held at 20 Hz", "f", "held", true, [](Values&, Values& f) { hold(f, 5); }},
       {"held at 30 Hz", "a_y", "held", true, [](Values& a, Values&) { hold(a, 10.0 / 3.0); }},
       {"straight lines from 20 Hz", "a_y", "held", true,
+       [](Values& a, Values&) { draw_lines(a, 5); }},
+      {"straight lines from 25 Hz", "f", "held", true,
+       [](Values&, Values& f) { draw_lines(f, 4); }},
+      {"straight lines from 20 Hz behind a noise", "a_y", "held", true,
        [](Values& a, Values&) {
-         const Values from = a;
-         for (std::size_t n = 0; n + 5 < a.size(); ++n) {
-           const std::size_t knot = n / 5 * 5;
-           a[n] = from[knot] + 0.2 * static_cast<double>(n % 5) * (from[knot + 5] - from[knot]);
-         }
+         draw_lines(a, 5);
+         add_noise(a, 0.01);
+       }},
+      {"held at 30 Hz behind a noise", "a_y", "held", true,
+       [](Values& a, Values&) {
+         hold(a, 10.0 / 3.0);
+         add_noise(a, 0.05);
+       }},
+      {"held at 10 Hz behind a noise", "f", "held", true,
+       [](Values&, Values& f) {
+         hold(f, 10);
+         add_noise(f, 0.2);
        }},
       {"held as a bus delivers", "f", "held", true,
        [](Values&, Values& f) {

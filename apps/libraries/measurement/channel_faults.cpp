@@ -46,8 +46,7 @@ double held_rows(const std::vector<double>& values, const std::vector<Place>& ru
 }
 
 double straight_rows(const std::vector<double>& x, double rate_hz) {
-  constexpr double kStraight = 0.005;     // of a large bend; 0.4 % of the rows of a noise
-  constexpr double kLeastError = 2.5e-3;  // of the variance: a twentieth of the amplitude
+  constexpr double kStraight = 0.005;  // of a large bend; 0.4 % of the rows of a noise
   constexpr double kLeastEven = 0.9;
   const auto bend = [&](std::size_t i) { return std::abs(x[i + 1] - 2.0 * x[i] + x[i - 1]); };
   std::vector<double> bends;
@@ -57,7 +56,6 @@ double straight_rows(const std::vector<double>& x, double rate_hz) {
   const double most = *large;
   std::vector<double> slopes;
   std::vector<std::size_t> lengths;
-  double squares = 0.0;
   bool inside = false;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
     const double slope = x[i + 1] - x[i];
@@ -68,8 +66,6 @@ double straight_rows(const std::vector<double>& x, double rate_hz) {
     }
     if (goes_on) ++lengths.back();
     inside = goes_on;
-    const double each = std::min(bend(i), most);
-    squares += each * each / static_cast<double>(bends.size());
   }
   const std::size_t lines = slopes.size();
   const auto sum = static_cast<double>(std::reduce(lengths.begin(), lengths.end()));
@@ -90,10 +86,7 @@ double straight_rows(const std::vector<double>& x, double rate_hz) {
       2 * slopes.size() < lines || rows > kLongest_s * rate_hz) {
     return 0.0;
   }
-  // A chord is off by D^2/120 on the mean, D the bend over its own rows; a row's bend is D/rows.
-  const double deviation = deviation_of(x);
-  const double error = rows * rows * rows * squares / 120.0;
-  return error >= kLeastError * deviation * deviation ? rows : 0.0;
+  return rows;
 }
 
 // A ramp of another kind is a signal: a counter has whole numbers.

@@ -48,9 +48,16 @@ std::optional<BadRows> clipped_in(const std::vector<double>& values,
 std::optional<BadRows> dropped_in(const std::vector<double>& values, double rate_hz);
 /// Rows for which a value is held, on the mean; 0: it is not held.
 double held_rows(const std::vector<double>& values, const std::vector<Place>& runs, double rate_hz);
+/// The same of values held (`order` 1) or straight lines (2) behind a noise: over the rows, the
+/// squares of the first or second differences are then a comb, whose lines are as large as their
+/// mean.  From 10 Hz on; of 32,768 rows.
+double comb_rows(const std::vector<double>& values, int order, double rate_hz);
 /// Rows from knot to knot of straight lines, as an interpolation from a lower rate leaves them; 0:
 /// there are none.
 double straight_rows(const std::vector<double>& values, double rate_hz);
+/// [-] of the variance, by which chords over so many rows are off: D^2/120 on the mean, D the bend
+/// over the rows of one; a row's bend is D/rows.
+double chord_error(const std::vector<double>& values, double rows);
 bool counts_rows(const std::vector<double>& values);
 /// Rows at which whole numbers have left one end of their range and go on at the other.
 std::vector<Place> overflows(const std::vector<double>& values);

@@ -234,19 +234,51 @@ class Screen {
       return true;
     }
     if (!is_motion_or_force(column.unit)) return false;
-    const double held = held_rows(values, runs, rows_.rate_hz);
-    // A target may move in straight lines.
-    const bool has_mass = column.unit == "m/s^2" || column.unit == "N" || column.unit == "N*m";
-    const double rows = held > 0.0 || !has_mass ? held : straight_rows(values, rows_.rate_hz);
-    if (!(rows > 0.0)) return false;
-    const std::string own_hz = fmt::format("{:.3g} rows: {:.4g} Hz inside {:.4g} Hz", rows,
-                                           rows_.rate_hz / rows, rows_.rate_hz);
-    add_whole(column, "held",
-              (held > 0.0 ? fmt::format("each value is held for {}, late by {:.3g} ms on the mean",
-                                        own_hz, 500.0 * (rows - 1.0) / rows_.rate_hz)
-                          : fmt::format("straight lines of {}", own_hz)) +
-                  "; record it at its own rate");
-    return true;
+    double rows = held_rows(values, runs, rows_.rate_hz);
+    if (rows == 0.0) rows = comb_rows(values, 1, rows_.rate_hz);
+    if (rows > 0.0) {
+      add_whole(column, "held",
+                fmt::format("each value is held for {}, late by {:.3g} ms on the mean; record it "
+                            "at its own rate",
+                            own_rate(rows), 500.0 * (rows - 1.0) / rows_.rate_hz));
+    }
+    return rows > 0.0 || in_lines(column, values);
+  }
+
+  [[nodiscard]] std::string own_rate(double rows) const {
+    return fmt::format("{:.3g} rows: {:.4g} Hz inside {:.4g} Hz", rows, rows_.rate_hz / rows,
+                       rows_.rate_hz);
+  }
+
+  // Straight lines between samples of r Hz let sinc(f/r)^2 of f through.  A target may move so.
+  bool in_lines(const Column& column, const std::vector<double>& values) {
+    constexpr double kBand_hz = 4.0;  // of the paper's motion
+    constexpr double kNoticed = 0.01;
+    constexpr double kLeastChord =
+        1e-6;  // a thousandth of the amplitude: a ramp's last digit bends
+    if (column.unit != "m/s^2" && column.unit != "N" && column.unit != "N*m") return false;
+    double rows = straight_rows(values, rows_.rate_hz);
+    if (rows == 0.0) rows = comb_rows(values, 2, rows_.rate_hz);
+    if (rows > 0.0 && chord_error(values, rows) < kLeastChord) return false;
+    const double angle = std::numbers::pi * kBand_hz * rows / rows_.rate_hz;
+    const double loss = rows > 0.0 ? 1.0 - std::pow(std::sin(angle) / angle, 2.0) : 0.0;
+    if (loss < kNoticed) return false;
+    const bool much = loss > diagnosis::kMostClipped;
+    const std::string says = fmt::format(
+        "straight lines of {}, which lose {:.2g} % at {:g} Hz; "
+        "record it at its own rate",
+        own_rate(rows), 100.0 * loss, kBand_hz);
+    if (much) {
+      add_whole(column, "held", says);
+    } else {
+      out_.faults.push_back({column.name,
+                             "held",
+                             {rows_.time_s.front()},
+                             1.0,
+                             column.name + ": " + says + ".",
+                             false});
+    }
+    return much;
   }
 
   // No stick and no cabin turns by as much.

@@ -234,5 +234,42 @@ TEST(IdentifyTest, ASpoiledRecordingGivesTheBodyOrIsNotUsable) {
   }
 }
 
+// A part of the recording has another gain or level than the rest, or a limit lies behind a noise:
+// linear models explain up to 99.9 % of the last quarter, and are off by 5 % and more.
+TEST(IdentifyTest, WhatChangesWithinARecordingIsNamedAndNotUsable) {
+  struct Change {
+    std::string words;
+    void (*make)(spoiled::Values& a, spoiled::Values& f);
+  };
+  const auto part = [](spoiled::Values& x, std::size_t first, std::size_t end, double by,
+                       double shift) {
+    for (std::size_t n = first; n < end; ++n) x[n] = by * x[n] + shift;
+  };
+  static const auto change = part;
+  const std::vector<Change> changes{
+      {"times the gain from 30.06 to 60 s",
+       [](auto&, auto& f) { change(f, 3000, 6000, 3.0, 0.0); }},
+      {"times the gain from 20.06 to 60 s",
+       [](auto&, auto& f) { change(f, 2000, 6000, 1.2, 0.0); }},
+      {"times the gain from 20.06 to 30.06 s",
+       [](auto&, auto& f) { change(f, 2000, 3000, 3.0, 0.0); }},
+      {"the mean of f is 20 N higher from 30",
+       [](auto&, auto& f) { change(f, 3000, 6000, 1.0, 20.0); }},
+      {"the mean of f is 4.99 N higher from 10",
+       [](auto&, auto& f) { change(f, 1000, 2000, 1.0, 5.0); }},
+      {"the mean of a_y is", [](auto& a, auto&) { change(a, 3000, 6000, 1.0, 5.0); }},
+      {"f follows a_y up to", [](auto&, auto& f) {
+         for (double& value : f) value = std::clamp(value, -2.0, 2.5);
+         spoiled::add_noise(f, 0.1);
+       }}};
+  for (const Change& each : changes) {
+    recording::Recording rows = spoiled::known_body();
+    each.make(rows.columns[0].values, rows.columns[1].values);
+    const IdentifyResult sut = identify(measurement::on_grid(std::move(rows), 1'000'000), {});
+    // 0.06 s later: the chain's filters delay the record by that.
+    EXPECT_THAT(std::string(sut.unusable), HasSubstr(each.words));
+  }
+}
+
 }  // namespace
 }  // namespace stillhand::identify

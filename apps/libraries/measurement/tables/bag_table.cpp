@@ -56,6 +56,7 @@ struct TopicRows {
   std::vector<std::vector<double>> values;
   std::vector<double> time_s;
   std::size_t misfits = 0;            // messages that do not fit the definition
+  std::size_t longer = 0;             // messages with bytes behind its members
   std::vector<std::size_t> segments;  // first message of each, as they came; the stamps go back
 
   // A message that comes late has a stamp that no other has.  Where the stamps have gone back,
@@ -222,8 +223,14 @@ class BagTable : public TableFile {
 
   void note_misfits(const std::map<std::size_t, TopicRows>& by_topic, RawColumns& out) const {
     for (const auto& [number, rows] : by_topic) {
-      if (rows.misfits == 0) continue;
       const std::size_t all = rows.misfits + rows.time_ns.size();
+      if (rows.longer > 0) {
+        out.notes.push_back(std::to_string(rows.longer) + " of " + std::to_string(all) +
+                            " messages of " + name(number) +
+                            " are longer than their definition: what follows its members is not "
+                            "read.");
+      }
+      if (rows.misfits == 0) continue;
       const std::string count = std::to_string(rows.misfits) + " of " + std::to_string(all) +
                                 " messages of " + name(number) + " do not fit their definition";
       if (static_cast<double>(rows.misfits) > kMostMisfits * static_cast<double>(all)) {
@@ -293,10 +300,12 @@ class BagTable : public TableFile {
                                        bag_->topics.topics.begin());
           const auto rows = by_topic.find(number);
           if (rows == by_topic.end()) return true;
-          if (!found->second->columns->read(message.bytes, cells)) {
+          std::size_t behind = 0;
+          if (!found->second->columns->read(message.bytes, cells, &behind)) {
             ++rows->second.misfits;
             return true;
           }
+          if (behind > 0) ++rows->second.longer;
           take(message, *found->second, cells, columns, rows->second);
           return true;
         });

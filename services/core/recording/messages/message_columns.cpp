@@ -188,10 +188,14 @@ bool MessageColumns::fill(const Node& node, CdrReader& in, std::vector<Cell>& ro
   return in.ok();
 }
 
-bool MessageColumns::read(std::span<const std::byte> message, std::vector<Cell>& row) const {
+bool MessageColumns::read(std::span<const std::byte> message, std::vector<Cell>& row,
+                          std::size_t* behind) const {
+  constexpr std::size_t kPadding = 3;
   CdrReader in(message);
   row.assign(columns_.size(), Cell{});
-  return in.ok() && fill(root_, in, row);
+  if (!in.ok() || !fill(root_, in, row)) return false;
+  if (behind != nullptr) *behind = in.left() > kPadding ? in.left() : 0;
+  return true;
 }
 
 }  // namespace stillhand::recording

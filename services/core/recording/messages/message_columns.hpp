@@ -50,7 +50,9 @@ class MessageColumns {
   [[nodiscard]] const std::vector<MessageColumn>& columns() const noexcept { return columns_; }
   /// Fills `row` with one cell for each column.  @returns false if it is not a message of this type
   /// or a list is longer than learned.
-  bool read(std::span<const std::byte> message, std::vector<Cell>& row) const;
+  /// @param behind  bytes that follow the members, beyond the padding to four
+  bool read(std::span<const std::byte> message, std::vector<Cell>& row,
+            std::size_t* behind = nullptr) const;
 
  private:
   struct Node {  // a value and its parts

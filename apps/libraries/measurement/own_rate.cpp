@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+#include <unsupported/Eigen/FFT>
+#include <utility>
+
+#include "apps/libraries/measurement/sample_faults.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+constexpr std::size_t kMostRows = 32768;
+constexpr double kLeastError = 0.01;  // of the variance
+constexpr double kFastest_hz = 10.0;  // of a hand
+constexpr double kSlowest_hz = 8.0;   // what beats more slowly is a signal
+
+// First or second differences of the first rows, a power of two of them.
+std::vector<double> differences_of(const std::vector<double>& x, int order) {
+  std::size_t rows = 1;
+  while (2 * rows + 2 <= std::min(x.size(), kMostRows + 2)) rows *= 2;
+  std::vector<double> out;
+  for (std::size_t i = 1; i <= rows; ++i) {
+    out.push_back(order == 1 ? x[i] - x[i - 1] : x[i + 1] - 2.0 * x[i] + x[i - 1]);
+  }
+  return out;
+}
+
+// Without the largest hundredth, which a few blows would fill.
+std::vector<double> capped_squares(const std::vector<double>& e) {
+  std::vector<double> out;
+  for (const double each : e) out.push_back(each * each);
+  std::vector<double> sorted = out;
+  const auto most = sorted.end() - 1 - std::ssize(sorted) / 100;
+  std::ranges::nth_element(sorted, most);
+  for (double& each : out) each = std::min(each, *most);
+  return out;
+}
+
+std::complex<double> line_at(const std::vector<double>& s, double per_row) {
+  const auto turn = std::polar(1.0, -2.0 * std::numbers::pi * per_row);
+  std::complex<double> phase = 1.0;
+  std::complex<double> sum = 0.0;
+  for (const double each : s) {
+    sum += each * phase;
+    phase *= turn;
+  }
+  return sum;
+}
+
+// The largest line within half a bin of one: its frequency [1/row], and its value.
+std::pair<double, std::complex<double>> line_near(const std::vector<double>& s, std::size_t bin) {
+  std::pair<double, std::complex<double>> best;
+  for (int part = -5; part <= 5; ++part) {
+    const double at = (static_cast<double>(bin) + 0.1 * part) / static_cast<double>(s.size());
+    const double per_row = std::min(at, 0.5);
+    const std::complex<double> line = line_at(s, per_row);
+    if (std::abs(line) > std::abs(best.second)) best = {per_row, line};
+  }
+  return best;
+}
+
+// Steps at the knots of values held, and what the rows between them move: nothing, where a value is
+// held, and back, in the teeth of a saw.  Those of a slow motion go on in their direction from one
+// knot to the next, those of a hum turn.
+bool are_held(const std::vector<double>& e, double per_row, double phase, bool slow) {
+  constexpr double kMostBetween = 0.5;
+  double squares = 0.0;
+  double onwards = 0.0;
+  double between = 0.0;
+  double before = 0.0;
+  double moved = 0.0;
+  std::size_t next = 0;
+  const double first = std::fmod(-phase / (2.0 * std::numbers::pi) + 1.0, 1.0) / per_row;
+  for (double at = first; at + 2.0 < static_cast<double>(e.size()); at += 1.0 / per_row) {
+    if (at < 1.0) continue;
+    auto knot = static_cast<std::size_t>(std::lround(at));
+    for (const std::size_t other : {knot - 1, knot + 1}) {
+      if (std::abs(e[other]) > std::abs(e[knot])) knot = other;
+    }
+    for (moved = 0.0; next < knot; ++next) moved += e[next];
+    next = knot + 1;
+    between += before * moved;
+    onwards += before * e[knot];
+    before = e[knot];
+    squares += before * before;
+  }
+  return std::abs(between) < kMostBetween * squares && (!slow || onwards > 0.0);
+}
+
+// A line bends into the next; a jump bends there and back, by -1/2 from row to row.  Noise has -2/3
+// there, and makes up at most 0.4 of what is left to it.
+bool are_bends(const std::vector<double>& e) {
+  constexpr double kMostBack = 0.4;
+  double products = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 1; i < e.size(); ++i) {
+    products += e[i] * e[i - 1];
+    squares += e[i] * e[i];
+  }
+  return products > -kMostBack * squares;
+}
+
+}  // namespace
+
+double chord_error(const std::vector<double>& x, double rows) {
+  double squares = 0.0;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const double bend = x[i + 1] - 2.0 * x[i] + x[i - 1];
+    squares += bend * bend / static_cast<double>(x.size());
+  }
+  const double deviation = deviation_of(x);
+  return rows * rows * rows * squares / 120.0 / (deviation * deviation);
+}
+
+double comb_rows(const std::vector<double>& values, int order, double rate_hz) {
+  // Knots at the nearest row leave sinc(1/k) of a line.  The squares of a sine have one of 0.5.
+  constexpr double kLeastLine = 0.6;
+  constexpr double kBetweenBins = 0.6;  // of a line, what the bins next to it show at least
+  constexpr std::size_t kFewestRows = 256;
+  const std::vector<double> e = differences_of(values, order);
+  if (e.size() < kFewestRows) return 0.0;
+  std::vector<double> squares = capped_squares(e);
+  const double sum = std::reduce(squares.begin(), squares.end());
+  const auto rows = static_cast<double>(squares.size());
+  // What a step costs: see held_rows().
+  const double deviation = deviation_of(values);
+  const auto steps_cost = [&](double step_rows) {
+    return step_rows * sum / rows / 3.0 >= kLeastError * deviation * deviation;
+  };
+  for (double& each : squares) each -= sum / rows;
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> lines;
+  fft.fwd(lines, squares);
+  for (std::size_t k = 2; k <= squares.size() / 2; ++k) {
+    if (!(std::abs(lines[k]) > kBetweenBins * kLeastLine * sum)) continue;
+    if (static_cast<double>(k) < kSlowest_hz / rate_hz * rows) return 0.0;
+    const auto [per_row, line] = line_near(squares, k);
+    if (std::abs(line) < kLeastLine * sum) continue;
+    // Of four rows or more, the second line of a comb is 0.7 of the first or more.
+    if (per_row <= 0.25 && std::abs(line_at(squares, 2.0 * per_row)) < 0.5 * std::abs(line)) {
+      return 0.0;
+    }
+    // A motion of 10 Hz in steps of 40 Hz turns by a quarter from one to the next.
+    const bool slow = rate_hz * per_row >= 4.0 * kFastest_hz;
+    if (order == 1 && !are_held(e, per_row, std::arg(line), slow)) return 0.0;
+    if (order == 2 && !are_bends(e)) return 0.0;
+    return order == 2 || steps_cost(1.0 / per_row) ? 1.0 / per_row : 0.0;
+  }
+  return 0.0;
+}
+
+}  // namespace stillhand::measurement
