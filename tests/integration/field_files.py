@@ -65,8 +65,12 @@ class Right:
 
 @dataclasses.dataclass
 class Unusable:
-    """Not usable, and no model to `diagnose`: an unsound finding (channel, what), or a word of the reason."""
+    """Not usable, and no model to `diagnose`: an unsound finding (channel, what), or a word of the reason.
+
+    `effects`: that `diagnose` may look for; what is small and slow it shows by an effect alone.
+    """
     said: object
+    effects: int = 0
 
 
 @dataclasses.dataclass
@@ -328,10 +332,12 @@ for name, change, said in (
         ("three times the gain for 10 s", lambda x: numpy.r_[x[:2000], 3.0 * x[2000:3000], x[3000:]], "times the gain"),
         ("a gain that drifts from 1 to 3", lambda x: x * numpy.linspace(1.0, 3.0, ROWS), "times the gain"),
         ("an offset of 20 N that steps in", lambda x: x + 20.0 * (TIME >= 30.0), "the mean of f"),
-        ("an offset of 0.5 N that steps in", lambda x: x + 0.5 * (TIME >= 30.0), "the mean of f"),
-        ("an offset of 20 N for 10 s", lambda x: x + 20.0 * ((TIME >= 20.0) & (TIME < 30.0)), "the mean of f"),
-        ("an offset that drifts to 10 N", lambda x: x + TIME / 6.0, "of the whole recording")):
+        ("an offset of 20 N for 10 s", lambda x: x + 20.0 * ((TIME >= 20.0) & (TIME < 30.0)), "the mean of f")):
     spoilt("A2", name, Unusable(said), force=change)
+spoilt("A2", "an offset of 0.5 N that steps in", Unusable("the mean of f", effects=1),
+       force=lambda x: x + 0.5 * (TIME >= 30.0))
+spoilt("A2", "an offset that drifts to 10 N", Unusable("of the whole recording", effects=1),
+       force=lambda x: x + TIME / 6.0)
 spoilt("A2", "a third of the acceleration's gain in the first half", Unusable("times the gain"),
        acc=lambda x: numpy.r_[x[:3000] / 3.0, x[3000:]])
 spoilt("A2", "an offset of the acceleration that steps in", Unusable("the mean of a_y"),
@@ -682,7 +688,7 @@ for name, begin, words in (("ride.db3", b"SQLite format 3\0", "ros2 bag convert"
                            ("ride.bag", b"#ROSBAG V2.0\n", "mcap convert"), ("ride.npy", b"\x93NUMPY", "numpy"),
                            ("ride.npz", b"PK\x03\x04", "numpy"), ("ride.edf", b"0       X X", "edf"), ("ride.feather",
                                                                    b"ARROW1", "pandas"),
-                           ("ride.pkl", b"\x80\x04\x95", "pandas"), ("ride.blf", b"LOGG", "can")):
+                           ("pandas.pkl", b"\x80\x05\x95", "pandas"), ("ride.pkl", b"\x80\x04\x95", "pandas"), ("ride.blf", b"LOGG", "can")):
     def other(folder, name=name, begin=begin):
         (folder / name).write_bytes(begin + bytes(range(256)) * 20)
         return folder / name, []

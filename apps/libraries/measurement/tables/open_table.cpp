@@ -38,7 +38,7 @@ struct ForeignKind {
   std::string_view convert;  // FILE stands for its name
 };
 using namespace std::string_view_literals;
-constexpr std::array<ForeignKind, 19> kForeignKinds{{
+constexpr std::array<ForeignKind, 20> kForeignKinds{{
     {"SQLite format 3\0"sv, "an SQLite file (rosbag2's .db3)",
      "MCAP: printf 'output_bags: [{uri: mcap, storage_id: mcap, all_topics: true}]' > o.yaml; "
      "ros2 bag convert -i FILE -o o.yaml"},
@@ -74,6 +74,8 @@ constexpr std::array<ForeignKind, 19> kForeignKinds{{
     {"ARROW1", "a Feather file",
      "a CSV: python3 -c \"import pandas; pandas.read_feather('FILE').to_csv('out.csv')\""},
     {"\x80\x04\x95", "a pickle of Python",
+     "a CSV: python3 -c \"import pandas; pandas.read_pickle('FILE').to_csv('out.csv')\""},
+    {"\x80\x05\x95", "a pickle of Python",
      "a CSV: python3 -c \"import pandas; pandas.read_pickle('FILE').to_csv('out.csv')\""},
     {"LOGG", "a log of a CAN bus (.blf)",
      "a CSV: python3 -m can.logconvert FILE out.csv, and then its signals by their database"},
