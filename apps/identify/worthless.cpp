@@ -86,7 +86,8 @@ std::string why_stepped(const IdentifyOptions& options, const identification::Re
       y[i] = found.of_level ? y[i] - found.level : y[i] / found.gain;
     }
     const double least = left_of_all(mended, options);
-    if (!(least < kBetterReading * std::min(left, 1.0))) continue;
+    const double enough = of_input ? diagnosis::kBetterClock : kBetterReading;
+    if (!(least < enough * std::min(left, 1.0))) continue;
     const std::string what =
         found.of_level ? fmt::format("the mean of {} is {:.3g} {} higher",
                                      of_input ? options.input : options.output,
@@ -114,7 +115,8 @@ std::string why_limited(const IdentifyOptions& options, const identification::Re
     if (std::isfinite(end)) ends += fmt::format("{}{:.3g}", ends.empty() ? "" : " and ", end);
   }
   return fmt::format(
-      "{} follows {} up to {} {}, and stays there in {:.3g} % of the rows: a limit, and the "
+      "{} follows {} up to {} {}, and stays there in {:.3g} % of the rows: a limit or a friction, "
+      "and the "
       "model's "
       "gain is wrong by about that; diagnose has effects for a limit",
       options.output, options.input, ends, unit, 100.0 * limit.share);

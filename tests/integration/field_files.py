@@ -379,7 +379,7 @@ spoilt("A3", "acceleration in straight lines from 25 Hz behind a noise of 3 %", 
 spoilt("A3", "force in straight lines from 20 Hz behind a noise of 1 %", Unusable(("f", "held")),
        force=noisy(lambda x: numpy.interp(TIME, TIME[::5], x[::5]), 0.01))
 for percent, noise in ((40, 0.01), (40, 0.2), (10, 0.05)):
-    spoilt("A3", f"force clipped in {percent} % of the rows, behind a noise of {noise:.0%}", Unusable("a limit"),
+    spoilt("A3", f"force clipped in {percent} % of the rows, behind a noise of {noise:.0%}", Unusable("a limit or"),
            force=noisy(lambda x, beyond=percent / 200: x.clip(*numpy.quantile(x, [beyond, 1.0 - beyond])), noise))
 spoilt("A3", "force stuck for 3 s", Right(("f", "stuck")),
        force=lambda x: numpy.r_[x[:3000], [x[3000]] * 300, x[3300:]])
