@@ -116,9 +116,8 @@ std::string why_limited(const IdentifyOptions& options, const identification::Re
   }
   return fmt::format(
       "{} follows {} up to {} {}, and stays there in {:.3g} % of the rows: a limit or a friction, "
-      "and the "
-      "model's "
-      "gain is wrong by about that; diagnose has effects for a limit",
+      "and "
+      "the model's gain is wrong by about that; diagnose has effects for both",
       options.output, options.input, ends, unit, 100.0 * limit.share);
 }
 
