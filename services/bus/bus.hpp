@@ -63,7 +63,7 @@ struct BusIncident {
   Kind kind;
   const topics::Topic* topic;  ///< never null
   char peer[32];               ///< service concerned, where known; zero-terminated
-  double by_us;                ///< [us] how much too late; [ticks] for kTicksLost
+  double by_us;                ///< [us] how much too late; of kTicksLost, how long the gap is
   /// QoS policy of kIncompatibleQos, participant of kSecondWriter; never null, lives as the Bus.
   const char* policy;
 };

@@ -175,7 +175,8 @@ void ReaderEndpoint::supervise(Tick tick, std::int64_t sent_ns, std::int64_t arr
   const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
   const auto verdict = monitor_.step(tick, difference_ns(sent_ns, ahead_ns), arrived_ns);
   if (verdict.lost > 0) {
-    note_incident(BusIncident::Kind::kTicksLost, sole_writer(), static_cast<double>(verdict.lost));
+    note_incident(BusIncident::Kind::kTicksLost, sole_writer(),
+                  static_cast<double>(verdict.lost * monitor_.period_us()));
   }
   if (verdict.late_by_us > 0) {
     note_incident(BusIncident::Kind::kCycleMissed, sole_writer(),

@@ -23,7 +23,7 @@ std::set<Tick> lost_by_identification(const SessionRecording& session, Tick firs
         std::string(event.source().c_str()) != "identification") {
       continue;
     }
-    const Tick begin = event.tick() - static_cast<Tick>(event.by_us());
+    const Tick begin = event.tick() - static_cast<Tick>(event.by_us() / 1000.0);  // a tick is 1 ms
     const bool shared = event.text().size() > 0;
     if (shared && event.tick() + kSharing_ticks > first && begin < end) {
       throw NotRecorded("which ticks reached the identification about tick " +

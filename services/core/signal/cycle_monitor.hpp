@@ -55,6 +55,7 @@ class CycleMonitor {
     return verdict;
   }
 
+  [[nodiscard]] std::int64_t period_us() const noexcept { return config_.period_us; }
   [[nodiscard]] std::int64_t samples() const noexcept { return samples_; }
   [[nodiscard]] std::int64_t lost() const noexcept { return lost_; }
   [[nodiscard]] std::int64_t misses() const noexcept { return misses_; }
