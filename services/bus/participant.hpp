@@ -31,9 +31,9 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
                                             DiscoveryListener* listener,
                                             const AdaptQos& adapt = {});
 
-/// A participant of this QoS.  @param listener  optional  @throws BusError when DDS refuses
-edds::DomainParticipant* create_participant(std::uint32_t domain,
-                                            const edds::DomainParticipantQos& qos,
+/// A participant of this QoS that sends to no multicast group but for discovery.
+/// @param listener  optional  @throws BusError when DDS refuses
+edds::DomainParticipant* create_participant(std::uint32_t domain, edds::DomainParticipantQos qos,
                                             DiscoveryListener* listener);
 
 /// The error of a profile file that lacks one.

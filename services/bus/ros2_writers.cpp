@@ -21,10 +21,6 @@ edds::DomainParticipantQos participant_qos(const std::string& name,
   qos.user_data().data_vec({enclave.begin(), enclave.end()});
   auto udp = std::make_shared<ertps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = addresses;
-  // Nothing is sent to a group that a reader announces.  Cyclone's readers do, and where two of
-  // them share one, Fast DDS 2.9.1 of Debian opens a channel to the group alone and ends with a
-  // failed assertion when it then sends to the second by itself.
-  qos.allocation().locators.max_multicast_locators = 0;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports = {udp};
   check_surroundings(qos, "--ros-address");

@@ -12,14 +12,18 @@ import unittest
 
 import lab_process
 from bus_case import CYCLONE_URI, LIMIT_S, Bus, stillhand
-from lab_process import BUILD, STILLHAND, next_domain
+from lab_process import BUILD, SOURCE, STILLHAND, next_domain
 
 IDL = pathlib.Path(__file__).resolve().parent / "foreign" / "plant.idl"
 FAST_DDS = BUILD / "tests" / "plant_writer"
 CYCLONE = BUILD / "tests" / "plant_cyclone"
+SESSION_READER = BUILD / "tests" / "session_reader"
+MOTION = STILLHAND.with_name("stillhand-motion")
 COMPARE = BUILD / "tests" / "compare_messages"
 COUNT = 60
 PATTERNS = ["--topics", "plant/*", "--topics", "rt/*"]
+needs_cyclone = unittest.skipUnless(CYCLONE.is_file(),
+                                    "built without Cyclone DDS (packages cyclonedds-dev and cyclonedds-tools)")
 
 
 def has_xcdr2():
@@ -108,7 +112,7 @@ class ForeignBusTest(Bus):
         self.assertEqual([int(row["tick [-]"]) for row in state], list(range(COUNT)))
         self.assertEqual([float(row["gains.1 [?]"]) for row in state], [-float(i) for i in range(COUNT)])
 
-    @unittest.skipUnless(CYCLONE.is_file(), "built without Cyclone DDS (packages cyclonedds-dev and cyclonedds-tools)")
+    @needs_cyclone
     def test_a_cyclone_program_is_recorded_and_replayed_bit_for_bit(self):
         if not has_xcdr2():
             return self.assert_plain_cdr_of_cyclone()
@@ -135,6 +139,20 @@ class ForeignBusTest(Bus):
         state = self.rows(file, "plant/state")
         self.assertEqual([float(row["joint.angle_rad [?]"]) for row in state], [0.5 * i for i in range(COUNT)])
         self.assert_replayed(file, ["plant/state"])
+
+    @needs_cyclone
+    def test_foreign_readers_that_join_and_leave_end_no_process_of_a_session(self):
+        process = self.start(MOTION, "--domain", self.domain, "--profiles", SOURCE / "qos" / "profiles.xml",
+                             "--config", SOURCE / "deploy" / "config")
+
+        def join():
+            reader = self.start(SESSION_READER, self.domain)
+            self.wait_for("status", process, lambda: "heard motion\n" in reader.said())
+            return reader
+        for reader in [join() for _ in range(3)]:
+            self.assertEqual(reader.end(signal.SIGTERM), 0, reader.said())
+            join()
+        self.assertEqual(process.end(signal.SIGINT), 0, process.said())
 
 
 if __name__ == "__main__":
