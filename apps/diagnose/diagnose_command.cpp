@@ -140,7 +140,7 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   verb->add_option("--stability", arguments->stability,
                    "repeat the diagnosis this many times, a fifth of the recording left out at "
                    "random, and count the verdicts [0: no repetition]")
-      ->check(CLI::Range(1, 1000));
+      ->check(CLI::Range(0, 1000));
   verb->add_option("--trial", arguments->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
   measurement::add_read_options(*verb, arguments->read);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
@@ -191,6 +192,7 @@ diagnosis::Signals started_from_output(const Prepared& made, const diagnosis::Si
   const diagnosis::Body& body = made.model.body;
   const auto order = static_cast<Eigen::Index>(body.order());
   const StartStates rest = StartStates::Zero(order, static_cast<Eigen::Index>(rows.size()));
+  if (order == 0) return started(signals, rest);
   const std::vector<double> output = run_of(made, started(signals, rest)).body;
   const Answer answer = [&](const StartStates& states) {
     return spread_out(run_of(made, started(signals, states)).prediction, made.working, made.whole,
@@ -250,6 +252,11 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
     prediction.table.time_s.push_back(time_s[n]);
     prediction.given.push_back(given[n]);
     column.values.push_back(values[n]);
+  }
+  if (std::ranges::all_of(prediction.given, std::identity()) && start_samples > 0) {
+    throw ConfigError("--start-from-output",
+                      std::to_string(start_samples) + ", and no stretch has more rows",
+                      "fewer than the recording's rows, so that some are left to predict");
   }
   if (left_out > 0) {
     prediction.notes.push_back(std::to_string(left_out) +

@@ -120,6 +120,21 @@ TEST(StartStateTest, IsRefusedWithoutTheOutputOrTheErrorOfTheModel) {
               HasSubstr("error is not known"));
 }
 
+TEST(StartStateTest, AStaticModelHasNone) {
+  const Measurement measurement = begun(slow_body());
+  const auto model = diagnosis::carried_as_it_is(model_with_error({{{2.0}}, {1.0}, 0.5}));
+  EXPECT_EQ(stillhand::predict::predict(model, measurement, kGiven).table.columns[0].values,
+            stillhand::predict::predict(model, measurement).table.columns[0].values);
+}
+
+TEST(StartStateTest, SomeRowsMustBeLeftToPredict) {
+  const Measurement measurement = begun(slow_body());
+  const auto model = diagnosis::carried_as_it_is(model_with_error(slow_body()));
+  EXPECT_THAT(support::refusal<ConfigError>(
+                  [&] { stillhand::predict::predict(model, measurement, measurement.size()); }),
+              HasSubstr("no stretch has more rows"));
+}
+
 // s_1 = b_1 u - a_1 y of the sample before: the state of one pole, about its first value.
 TEST(StateSpreadTest, OfOnePoleIsTheSquareOfItsState) {
   const diagnosis::Body body{{{0.5, 2.0}}, {1.0, -0.5}, 0.0};
