@@ -144,9 +144,9 @@ Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& re
   Page page(
       "Diagnosis: " + found.options.output + " from " + first.substr(first.find_last_of('/') + 1) +
           (recordings.size() == 1 ? "" : " and " + std::to_string(recordings.size() - 1) + " more"),
-      found.stability ? fmt::format("{} Strongest effect {}.", verdict_in_words(found),
-                                    stability_in_words(*found.stability))
-                      : verdict_in_words(found));
+      found.stability
+          ? fmt::format("{} {}.", verdict_in_words(found), stability_in_words(*found.stability))
+          : verdict_in_words(found));
   std::vector<std::string> notes = found.notes;
   for (const diagnosis::SampleFault& fault : found.screening) {
     page.warning(fault.says);

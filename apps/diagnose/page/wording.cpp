@@ -194,10 +194,12 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
 std::string stability_in_words(const diagnosis::VerdictStability& stability) {
   std::vector<std::string> words;
   for (const auto& [verdict, count] : stability.counts) {
-    words.push_back(fmt::format("{} {}", count, verdict));
+    std::string words_of = verdict;
+    std::ranges::replace(words_of, '_', ' ');
+    words.push_back(fmt::format("{} ({})", words_of, count));
   }
-  return fmt::format("of {} disturbed repetitions {}", stability.repetitions,
-                     fmt::join(words, ", "));
+  return fmt::format("{} repetitions without a fifth of the recording end in {}",
+                     stability.repetitions, fmt::join(words, ", "));
 }
 
 }  // namespace stillhand::diagnose

@@ -41,7 +41,7 @@ bool none_carried(const diagnosis::Diagnosis& diagnosis);
 /// The verdict in words, a few sentences.
 std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis);
 
-/// "of 20 disturbed repetitions 17 hysteresis, 3 dead_zone"
+/// "20 repetitions without a fifth of the recording end in hysteresis (17), dead zone (3)"
 std::string stability_in_words(const diagnosis::VerdictStability& stability);
 
 }  // namespace stillhand::diagnose

@@ -188,7 +188,8 @@ TEST(DiagnosisJsonTest, ASharePerVerdictIsGivenWhereItWasAskedFor) {
   EXPECT_EQ(json_of(diagnosis)["stability"],
             json::parse(R"({"hysteresis":0.75,"nothing missing":0.25})"));
   EXPECT_THAT(diagnosis_table(diagnosis),
-              HasSubstr("of 4 disturbed repetitions 3 hysteresis, 1 nothing missing"));
+              HasSubstr("4 repetitions without a fifth of the recording end in hysteresis (3), "
+                        "nothing missing (1)"));
 }
 
 TEST(DiagnosisJsonTest, TheTableHasALineForEveryError) {
