@@ -1,29 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // plant_cyclone DOMAIN [plain]: the same with Cyclone DDS: one type with a key in plain CDR, one
 // that may grow, in XCDR 2, for which "plain" waits for no reader.
-#include <dds/dds.h>
-#include <signal.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "plant.h"
+#include "tests/support/cyclone.h"
 
 enum { kCount = 60 };
-
-static volatile sig_atomic_t stop = 0;
-static void on_signal(int number) {
-  (void)number;
-  stop = 1;
-}
-
-static dds_entity_t good(dds_entity_t result, const char* what) {
-  if (result < 0) {
-    fprintf(stderr, "plant_cyclone: %s: %s\n", what, dds_strretcode(-result));
-    exit(1);
-  }
-  return result;
-}
 
 static bool has_reader(dds_entity_t writer) {
   dds_publication_matched_status_t status;

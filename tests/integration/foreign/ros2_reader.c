@@ -1,29 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // ros2_reader DOMAIN reliable|best-effort: reads the topics of the bridge with Cyclone DDS, as a
 // node of ROS 2 does, and prints a line of JSON for each message: topic, frame, numbers, texts.
-#include <dds/dds.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "ros2.h"
+#include "tests/support/cyclone.h"
 
 enum { kTopics = 8, kAtOnce = 64 };
-
-static volatile sig_atomic_t stop = 0;
-static void on_signal(int number) {
-  (void)number;
-  stop = 1;
-}
-
-static dds_entity_t good(dds_entity_t result, const char* what) {
-  if (result < 0) {
-    fprintf(stderr, "ros2_reader: %s: %s\n", what, dds_strretcode(-result));
-    exit(1);
-  }
-  return result;
-}
 
 static const char* text(const char* of) { return of == NULL ? "" : of; }
 static void print_three(const double* xyz) {

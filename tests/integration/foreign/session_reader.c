@@ -2,26 +2,8 @@
 // session_reader DOMAIN: reads stillhand/event with Cyclone DDS as a late joiner does, and prints
 // which processes' status it hears. Its reader of the status comes second, so a process that writes
 // to it knows its reader of events.
-#include <dds/dds.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "session.h"
-
-static volatile sig_atomic_t stop = 0;
-static void on_signal(int number) {
-  (void)number;
-  stop = 1;
-}
-
-static dds_entity_t good(dds_entity_t result, const char* what) {
-  if (result < 0) {
-    fprintf(stderr, "session_reader: %s: %s\n", what, dds_strretcode(-result));
-    exit(1);
-  }
-  return result;
-}
+#include "tests/support/cyclone.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

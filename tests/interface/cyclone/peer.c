@@ -3,27 +3,10 @@
 // idl/control_loop.idl. Until SIGTERM it writes stillhand/motor_command at 1 kHz and reads
 // stillhand/platform_command; tells on stdout when it runs, what came first, and how much came in
 // all.
-#include <dds/dds.h>
 #include <inttypes.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "control_loop.h"
-
-static volatile sig_atomic_t stop = 0;
-static void on_signal(int number) {
-  (void)number;
-  stop = 1;
-}
-
-static dds_entity_t good(dds_entity_t result, const char* what) {
-  if (result < 0) {
-    fprintf(stderr, "cyclone_peer: %s: %s\n", what, dds_strretcode(-result));
-    exit(1);
-  }
-  return result;
-}
+#include "tests/support/cyclone.h"
 
 // What the pattern stream_1khz asks of a writer: qos/README.md, "From another DDS".
 static dds_qos_t* stream_1khz(void) {
