@@ -50,7 +50,8 @@ TEST_F(TimelineTest, WhatFallsTogetherIsOneMarkAtTheFirstThatTellsTheWorst) {
   EXPECT_EQ(marks[0].level, Level::kCritical);
 }
 
-// A process that waits is late by a little more.  A small lateness of the rig is no cause of a long one.
+// A process that waits is late by a little more.  A small lateness of the rig is no cause of a long
+// one.
 TEST_F(TimelineTest, OfWhatFallsTogetherTheCauseIsShown) {
   const auto shown = [this](std::int64_t at_ms, double rig_ms) {
     for (const auto& [topic, late_ms, waits_for] :
