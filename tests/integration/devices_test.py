@@ -37,14 +37,26 @@ class DevicesCase(LabTestCase):
         return laboratory
 
     def pushing_session(self, **keywords):
-        """A session in condition C, in which the emulated drive pushes."""
-        domain = next_domain()
-        arguments = quick_session(self.folder / "config")
-        laboratory = self.laboratory(domain=domain, **keywords)
-        lab = self.lab("--rig", "devices", *arguments, domain=domain)
-        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
-        self.wait_for_push(lab, laboratory)
-        return lab, laboratory
+        """A session in condition C, in which the emulated drive pushes.
+
+        A host that stalls makes samples too old: the interlock rightly ends that session, and another one begins.
+        """
+        for left in (2, 1, 0):
+            folder = self.folder / f"pushing-{left}"
+            domain = next_domain()
+            arguments = quick_session(folder / "config")
+            laboratory = self.laboratory(folder / "config", domain=domain, **keywords)
+            lab = self.lab("--rig", "devices", *arguments, domain=domain, out=folder / "run")
+            try:
+                lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+                self.wait_for_push(lab, laboratory)
+            except AssertionError as why:
+                if left == 0 or "too late" not in str(why):
+                    raise
+                print(f"another session: {why}", flush=True)
+                laboratory.close()
+                continue
+            return lab, laboratory
 
     @staticmethod
     def wait_for_push(lab, laboratory):
