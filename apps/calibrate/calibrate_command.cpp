@@ -1,19 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/calibrate/calibrate_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "apps/calibrate/ask.hpp"
 #include "apps/calibrate/calibrate.hpp"
 #include "apps/calibrate/hand_off_steps.hpp"
 #include "apps/calibrate/platform_steps.hpp"
+#include "apps/libraries/report/command_line.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "services/files/settings/check_name.hpp"
 
 namespace stillhand::calibrate {
 namespace {
+
+constexpr std::array<std::string_view, 5> kOrder{"force", "acceleration", "angle", "platform",
+                                                 "check"};
 
 /// calibration.yaml keeps it.
 std::string check_short(const std::string& word) {
@@ -54,6 +65,15 @@ void add_measures(CLI::App& calibrate, CalibrateOptions& options) {
       ->capture_default_str();
 }
 
+void say_following(const std::string& signal, const CalibrateOptions& options) {
+  const auto* at = std::ranges::find(kOrder, signal);
+  const std::string config = " --config " + report::quoted_for_shell(options.config);
+  report::say_next(at + 1 == kOrder.end()
+                       ? "stillhand lab --rig devices" + config
+                       : fmt::format("stillhand calibrate {}{} --person {}", *(at + 1), config,
+                                     report::quoted_for_shell(options.person)));
+}
+
 }  // namespace
 
 void add_calibrate_command(CLI::App& cli, int& status) {
@@ -75,7 +95,7 @@ void add_calibrate_command(CLI::App& cli, int& status) {
       "Example: stillhand calibrate force --config hall --person kl --known 0,5,10,-5,-10");
   calibrate->add_option("signal", *signal, "what to calibrate, as above")
       ->required()
-      ->check(CLI::IsMember({"force", "acceleration", "angle", "platform", "check"}));
+      ->check(CLI::IsMember(std::vector<std::string>(kOrder.begin(), kOrder.end())));
   calibrate
       ->add_option("--config", options->config,
                    "your folder of settings, with devices.yaml; to begin with, copy the folder "
@@ -108,14 +128,13 @@ void add_calibrate_command(CLI::App& cli, int& status) {
     const runtime::Stop interrupted;
     if (*signal == "platform") {
       status = run_calibrate_platform(*options, interrupted);
-      return;
-    }
-    if (*signal == "check") {
+    } else if (*signal == "check") {
       status = run_hand_off_check(*options, interrupted);
-      return;
+    } else {
+      options->signal = signals.at(*signal);
+      status = run_calibrate(*options, interrupted);
     }
-    options->signal = signals.at(*signal);
-    status = run_calibrate(*options, interrupted);
+    if (status == 0) say_following(*signal, *options);
   });
 }
 

@@ -16,8 +16,10 @@
 #include "apps/close_the_loop/output.hpp"
 #include "apps/lab/lab_options.hpp"
 #include "apps/libraries/measurement/read_options.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/result_files.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 #include "services/files/cancellation/control_model_file.hpp"
@@ -106,6 +108,8 @@ int run(const ControlModelArguments& arguments) {
     std::printf("%s: %s: %s%s\n", each.kind.c_str(), each.cancelled ? "cancelled" : "left alone",
                 each.how.c_str(), difference_of(each).c_str());
   }
+  report::say_next("stillhand lab --conditions A,B,C --model " +
+                   report::quoted_for_shell(arguments.save) + " --out run2");
   return 0;
 }
 

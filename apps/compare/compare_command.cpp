@@ -14,6 +14,7 @@
 #include "apps/compare/findings.hpp"
 #include "apps/compare/summary_file.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
 
@@ -38,7 +39,8 @@ void run_compare(const CompareOptions& options) {
   write_report(all, folder.path());
   folder.write("comparison.json", comparison_json(all));
   folder.publish({std::begin(kReportFiles), std::end(kReportFiles)});
-  std::cout << "wrote " << (options.out / "comparison.html").string() << '\n';
+  std::cout << "comparison in " << options.out.string() << '\n';
+  report::say_next("open " + (options.out / "comparison.html").string());
 }
 
 }  // namespace

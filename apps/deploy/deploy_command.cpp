@@ -14,7 +14,9 @@
 #include "apps/deploy/generate.hpp"
 #include "apps/deploy/machine.hpp"
 #include "apps/deploy/real_time_checks.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/result_files.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/system/process/shipped.hpp"
@@ -43,6 +45,8 @@ int run_generate(const Arguments& arguments) {
     fmt::print("{}: from an earlier run; lab {} has no such host now\n", folder.string(),
                inventory.lab);
   }
+  report::say_next("on each machine: stillhand deploy check " +
+                   report::quoted_for_shell(arguments.inventory));
   return 0;
 }
 
@@ -110,6 +114,9 @@ int run_check(const Arguments& arguments) {
   if (files.wants("--json")) {
     files.set_json("--json", json_of(inventory, host, findings, all_good));
     files.publish();
+  }
+  if (all_good) {
+    report::say_next("stillhand lab --inventory " + report::quoted_for_shell(arguments.inventory));
   }
   return all_good ? 0 : 1;
 }

@@ -106,7 +106,9 @@ void add_new(CLI::App& verb, const std::shared_ptr<Typed>& typed) {
   CLI::App* sub = subcommand(verb, "new", "Makes the folder and its experiment.yaml.", *typed);
   Design& design = typed->design;
   sub->add_option("--title", design.title, "title")->capture_default_str();
-  sub->add_option("--conditions", typed->conditions, live_conditions())->capture_default_str();
+  sub->add_option("--conditions", typed->conditions,
+                  "comma-separated: " + session::known_conditions(session::kExperimentConditions))
+      ->capture_default_str();
   sub->add_option("--participants", design.participants, "planned number")->capture_default_str();
   sub->add_option("--order", typed->order, "orders of the trials")
       ->type_name("{random,latin,williams}")

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <map>
 
+#include "apps/libraries/report/command_line.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "idl/topics.hpp"
 #include "services/system/process/clock.hpp"
 
@@ -91,6 +93,7 @@ bool print_end(const recording::BusRecording& recorded, const runtime::Tap& tap,
   }
   if (totals.received == 0) warn(fmt::format("no message was received on domain {}", domain));
   if (!closed.ok()) warn(closed.text);
+  report::say_next("stillhand info " + report::quoted_for_shell(end.file));
   return closed.ok() && trouble.empty() && totals.lost == 0 && end.dropped == 0 &&
          tap.unattributed() == 0 && totals.received > 0;
 }

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/result_files.hpp"
+#include "apps/libraries/report/text.hpp"
 #include "apps/recordings/export.hpp"
 #include "apps/recordings/info.hpp"
 #include "apps/recordings/recover.hpp"
@@ -35,6 +38,14 @@ struct InfoArguments {
   std::filesystem::path json;
 };
 
+// Of damage, of a session, of what another program recorded.
+const char* next_verb(const RecordingInfo& info) {
+  if (!info.damage.empty()) return "recover";
+  const bool session = std::any_of(info.topics.begin(), info.topics.end(),
+                                   [](const TopicInfo& each) { return each.lost_ticks; });
+  return session ? "misses" : "identify";
+}
+
 int run_info(const InfoArguments& arguments) {
   report::ResultFiles files({{"--json", arguments.json}}, {arguments.recording});
   OpenRecording recording(arguments.recording);
@@ -43,6 +54,8 @@ int run_info(const InfoArguments& arguments) {
   files.publish();
   std::fputs(info_text(info).c_str(), stdout);
   recording.report_loss(info.messages);
+  report::say_next(fmt::format("stillhand {} {}", next_verb(info),
+                               report::quoted_for_shell(arguments.recording)));
   return 0;
 }
 
@@ -70,6 +83,7 @@ int run_verify(const std::string& path) {
   }
   std::fputs(damage_text(damage).c_str(), stdout);
   recording.report_loss(messages);
+  if (!being_written) report::say_next("stillhand recover " + report::quoted_for_shell(path));
   return 1;
 }
 
@@ -106,6 +120,7 @@ int run_recover(RecoverArguments arguments) {
     fmt::print("{} attachments are in the old file only\n", result.attachments);
   }
   if (!result.kept.empty()) fmt::print("the old file is kept as {}\n", result.kept);
+  report::say_next("stillhand info " + report::quoted_for_shell(result.out));
   return 0;
 }
 

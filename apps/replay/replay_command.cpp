@@ -94,10 +94,10 @@ void add_replay_command(CLI::App& cli, int& status) {
   verb->add_option("--wait-seconds", arguments->wait_s, "longest wait of --wait-for [s]")
       ->check(recording::within(0.0, kMostSeconds))
       ->capture_default_str();
-  verb->add_option(
-      "--remote", arguments->remote,
-      "do not play; send a command to the replay of the domain: play, pause, step, stop, "
-      "\"seek S\", \"rate R\", \"loop S S\", loop-off");
+  verb->add_option("--remote", arguments->remote,
+                   "do not play; send this to the replay of the domain; or \"seek S\", \"rate R\", "
+                   "\"loop S S\"")
+      ->type_name("{play,pause,step,stop,loop-off}");
   verb->add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();

@@ -96,7 +96,7 @@ void add_protocol_options(CLI::App& study, StudyOptions& options, Arguments& arg
       ->capture_default_str();
   study
       .add_option("--conditions", arguments.conditions,
-                  session::known_conditions(session::kStudyConditions))
+                  "comma-separated: " + session::known_conditions(session::kStudyConditions))
       ->capture_default_str();
   study
       .add_option("--canceller", options.canceller,

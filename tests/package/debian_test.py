@@ -289,6 +289,10 @@ class InstalledTest(unittest.TestCase):
         self.assertEqual(completed("study", "--sub"), ["--subjects"])
         self.assertEqual(completed("deploy", "check", "lab.yaml", "--j"), ["--json"])
         self.assertEqual(set(completed("lab", "--operator", "")), {"simulated", "mouse", "gamepad"})
+        self.assertEqual(completed("lab", "--conditions", "A,no"), ["A,notch"])
+        self.assertIn("low-pass", completed("lab", "--conditions", ""))
+        self.assertIn("C+", completed("experiment", "new", "--conditions", "C"))
+        self.assertEqual(set(completed("replay", "--remote", "s")), {"step", "stop"})
         self.assertEqual(completed("lab", "--out", ""), [])  # file names: readline's own
 
     @lab_process.campaign
