@@ -118,10 +118,7 @@ void check_settling(const cancellation::Countermeasure& mitigation,
 void check_mitigations(const LabOptions& options,
                        const std::vector<session::PlannedTrial>& trials) {
   if (std::ranges::all_of(trials, [](const auto& each) { return each.parts.empty(); })) return;
-  auto config =
-      settings::load<cancellation::Config>(options.config / "cancellation.yaml", "cancellation");
-  // As the process does: without the word its settings hold.
-  if (options.canceller != "now") config.sampling = cancellation::sampling_named(options.canceller);
+  const cancellation::Config config = canceller_config(options);
   for (const session::PlannedTrial& planned : trials) {
     if (planned.parts.empty()) continue;
     try {

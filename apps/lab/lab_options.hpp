@@ -10,6 +10,7 @@
 #include "apps/libraries/session/protocol.hpp"
 #include "services/bus/recording/keep_options.hpp"
 #include "services/bus/recording/of_experiment.hpp"
+#include "services/core/cancellation/config.hpp"
 
 namespace stillhand::lab {
 
@@ -53,5 +54,9 @@ struct LabOptions {
 
 /// Sets programs, profiles and config: those of the build tree or of an installed prefix.
 void set_places(LabOptions& options);
+
+/// Settings of the process of cancellation in this session.
+/// @throws ConfigError when their file is wrong.
+cancellation::Config canceller_config(const LabOptions& options);
 
 }  // namespace stillhand::lab

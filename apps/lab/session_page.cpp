@@ -66,6 +66,30 @@ void add_mitigations(const session::SessionResult& result, report::Page& page) {
   page.table(table);
 }
 
+void add_budgets(const session::SessionResult& result, report::Page& page) {
+  for (const session::TrialResult& trial : result.trials) {
+    if (!trial.budget) continue;
+    report::Table table{
+        "What " + std::string(session::name_of(trial.label)) +
+            " leaves of the feedthrough force, split into its causes. They add up to the whole; a "
+            "cause that cancels another one is negative.",
+        {"cause", "[N]", "95 % interval [N]"}};
+    // Hundredths below half of one are no cause, of either sign.
+    const auto rounded = [](double force_n) { return std::round(100.0 * force_n) / 100.0 + 0.0; };
+    const auto add = [&](const std::string& name, const session::ForceEstimate& each) {
+      table.rows.push_back(
+          {name, fmt::format("{:.2f}", rounded(each.force_n)),
+           fmt::format("{:.2f} to {:.2f}", rounded(each.low_n), rounded(each.high_n))});
+    };
+    for (const session::ForceCause& cause : session::kForceCauses) {
+      add(fmt::format("{}: {}", cause.key, cause.meaning), (*trial.budget).*cause.of);
+    }
+    add("all: RMS of the body's and the motor's force together", trial.budget->left);
+    page.section("What is left");
+    page.table(table);
+  }
+}
+
 }  // namespace
 
 report::Page session_page(const LabOptions& options, const session::SessionResult& result,
@@ -91,6 +115,7 @@ report::Page session_page(const LabOptions& options, const session::SessionResul
       "The paper's RMS error has no unit; this page takes 5.5 mm for a unit. One trial of a "
       "condition has no interval, and another session gives other numbers.");
   for (const std::string& line : disturbance_lines(result)) page.paragraph("* " + line + ".");
+  add_budgets(result, page);
   add_mitigations(result, page);
   if (drawings.empty()) return page;
   page.section("Traces");

@@ -77,6 +77,18 @@ void print_disturbances(const session::SessionResult& result) {
   for (const std::string& line : disturbance_lines(result)) std::printf("%s\n", line.c_str());
 }
 
+void print_budgets(const session::SessionResult& result) {
+  for (const session::TrialResult& trial : result.trials) {
+    if (!trial.budget) continue;
+    std::printf("%s leaves %.2f N of the feedthrough:", session::name_of(trial.label),
+                trial.budget->left.force_n);
+    for (const session::ForceCause& cause : session::kForceCauses) {
+      const bool last = &cause == &session::kForceCauses.back();
+      std::printf(" %s %.2f%s", cause.key, ((*trial.budget).*cause.of).force_n, last ? "\n" : ",");
+    }
+  }
+}
+
 void print_rig(const LabOptions& options) {
   if (options.devices.empty()) return;
   const auto devices = settings::load<device_rig::DevicesConfig>(options.devices, "devices");
@@ -154,11 +166,18 @@ void draw(const LabOptions& options, const session::SessionResult& result) {
   }
 }
 
+session::AnswerConfigs answers_of(const LabOptions& options) {
+  const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");
+  return {settings::load<sensing::Config>(options.config / "sensing.yaml", "sensing"),
+          canceller_config(options), rig.motor, rig.stick.lever_m};
+}
+
 }  // namespace
 
 int report_session(const LabOptions& options, std::vector<session::TrialOutcome> outcomes,
                    bool interrupted) {
-  session::SessionResult result = evaluate((options.out / "session.mcap").string(), outcomes);
+  session::SessionResult result =
+      evaluate((options.out / "session.mcap").string(), outcomes, answers_of(options));
   for (session::TrialOutcome& outcome : outcomes) {
     const auto why = result.unrecorded.find(outcome.planned.trial.number);
     if (why == result.unrecorded.end()) continue;
@@ -179,6 +198,7 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   print_table(result);
   print_mitigations(result);
   print_disturbances(result);
+  print_budgets(result);
   print_rig(options);
   print_models(result, options.model);
   print_motion(outcomes, options.protocol);

@@ -74,6 +74,21 @@ ordered_json disturbed_json(const session::SessionResult& result, std::int64_t t
   return list;
 }
 
+// null: no motor cancels, or nobody knows the feedthrough.
+ordered_json lateness_json(const session::SessionResult& result, std::int64_t number) {
+  const auto trial = std::ranges::find(result.trials, number, &session::TrialResult::number);
+  if (trial == result.trials.end() || !trial->budget) return nullptr;
+  const auto estimate = [](const session::ForceEstimate& each) -> ordered_json {
+    return {{"force_n", or_null(each.force_n)},
+            {"interval95", {or_null(each.low_n), or_null(each.high_n)}}};
+  };
+  ordered_json json{{"left", estimate(trial->budget->left)}};
+  for (const session::ForceCause& cause : session::kForceCauses) {
+    json[cause.key] = estimate((*trial->budget).*cause.of);
+  }
+  return json;
+}
+
 ordered_json restoration_json(const session::SessionResult& result) {
   ordered_json restoration;
   for (const session::Metric& metric : session::kMetrics) {
@@ -295,6 +310,7 @@ ordered_json summary_json(const LabOptions& options,
   for (const session::TrialOutcome& outcome : outcomes) {
     summary["trials"].push_back(trial_json(outcome, options));
     summary["trials"].back()["disturbed"] = disturbed_json(result, outcome.planned.trial.number);
+    summary["trials"].back()["lateness"] = lateness_json(result, outcome.planned.trial.number);
   }
   summary["lost_ticks"] = result.lost_ticks;
   summary["clocks"] = clocks_json(result);

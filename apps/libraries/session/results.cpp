@@ -272,7 +272,8 @@ void find_disturbances(const SessionRecording& session, const std::vector<TrialO
 
 }  // namespace
 
-SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes) {
+SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes,
+                       const std::optional<AnswerConfigs>& answers) {
   const SessionRecording session = read_session(recording);
   SessionResult result;
   result.lost_ticks = session.lost_ticks;
@@ -293,6 +294,10 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
     }
     if (planned.trial.phase != TrialPhase::kTracking) continue;
     result.trials.push_back(evaluate_trial(session, planned));
+    TrialResult& trial = result.trials.back();
+    if (answers && planned.cancellation && planned.parts.empty() && trial.models.force) {
+      trial.budget = force_budget(on_time_signals(session, planned, *trial.models.force, *answers));
+    }
     if (planned.moving && result.model && result.model->usable() && !result.conversion) {
       const RateConversionCost cost = conversion_cost(session, *result.model, planned.trial);
       if (std::isfinite(cost.control_filter)) result.conversion = cost;

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/libraries/session/force_budget.hpp"
 #include "apps/libraries/session/misses.hpp"
+#include "apps/libraries/session/on_time.hpp"
 #include "apps/libraries/session/sensed_share.hpp"
 #include "apps/libraries/session/session_recording.hpp"
 #include "apps/libraries/session/trial_forces.hpp"
@@ -39,6 +41,7 @@ struct TrialResult {
   /// mitigations (SU-19): what adapts may settle in it.
   double settled_rms_error_mm = 0.0;
   TrialForces forces;
+  std::optional<ForceBudget> budget;  ///< of condition C alone, where the feedthrough is known
   /// How late the motor's force opposes f', counterforce_delay_s(); only where a prediction of f'
   /// is all that drives it: a shaped stick answers the stick's motion.
   std::optional<double> counterforce_delay_s;
@@ -94,7 +97,9 @@ struct SessionResult {
 
 /// Computes the completed trials' results from a recording.  One of which it lacks a second or more
 /// does not count, whatever was reported while it ran.
+/// @param answers  settings that the session ran with, for ForceBudget; none: it is left out
 /// @throws ConfigError when the recording cannot be read.
-SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes);
+SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes,
+                       const std::optional<AnswerConfigs>& answers = {});
 
 }  // namespace stillhand::session

@@ -2,12 +2,11 @@
 #include "apps/libraries/session/sensed_share.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <functional>
 
+#include "apps/libraries/session/jackknife.hpp"
 #include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::session {
@@ -15,7 +14,7 @@ namespace {
 
 using signal::CrossSpectra;
 
-constexpr std::size_t kBlocks = 10;
+constexpr std::size_t kBlocks = kJackknifeBlocks;
 constexpr double kLeast_s = 12.0;
 constexpr double kMost_s = 8.0;       // of a segment
 constexpr double kExcited = 0.01;     // of the largest density of the acceleration
@@ -83,19 +82,6 @@ double coherent_power(const CrossSpectra& spectra, const CrossSpectra& like) {
   return power;
 }
 
-/// The jackknife's variance of a statistic over the blocks.
-double jackknife_variance(const std::function<double(std::size_t)>& without) {
-  std::vector<double> values;
-  double mean = 0.0;
-  for (std::size_t b = 0; b < kBlocks; ++b) {
-    values.push_back(without(b));
-    mean += values.back() / static_cast<double>(kBlocks);
-  }
-  double squares = 0.0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return squares * static_cast<double>(kBlocks - 1) / static_cast<double>(kBlocks);
-}
-
 }  // namespace
 
 std::optional<SensedShare> sensed_share(const SensedMotion& moving, const SensedMotion& cancelled,
@@ -125,8 +111,7 @@ std::optional<SensedShare> sensed_share(const SensedMotion& moving, const Sensed
   const double variance =
       jackknife_variance([&](std::size_t j) { return left(mean_without(b, j), all_c); }) +
       jackknife_variance([&](std::size_t j) { return left(all_b, mean_without(c, j)); });
-  const boost::math::students_t spread(static_cast<double>(kBlocks - 1));
-  const double reach = quantile(complement(spread, 0.025)) * std::sqrt(variance);
+  const double reach = jackknife_reach(variance);
   const double share = 1.0 - left(all_b, all_c);
   return SensedShare{share, share - reach, share + reach};
 }

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace stillhand::session {
+
+/// A force [N] with its 95 % interval.
+struct ForceEstimate {
+  double force_n = 0.0;
+  double low_n = 0.0;
+  double high_n = 0.0;
+};
+
+/// What is left of the feedthrough in a trial with cancellation, and its causes.  They add up to
+/// it; a cause that cancels another one is negative.  README Eq. SN-8.
+struct ForceBudget {
+  ForceEstimate left;         ///< RMS(f' + f_m), Eq. SN-4
+  ForceEstimate model;        ///< what the model does not predict
+  ForceEstimate lateness;     ///< samples lost on the way, answers that came late or not
+  ForceEstimate limits;       ///< force and slew limits, ramps and fades
+  ForceEstimate involuntary;  ///< what no linear filter of the motion explains
+  ForceEstimate sensor;       ///< noise and steps of the accelerometer
+};
+
+/// A cause, for tables and files.
+struct ForceCause {
+  const char* key;      ///< in summary.json
+  const char* meaning;  ///< for a page
+  ForceEstimate ForceBudget::* of;
+};
+inline constexpr std::array<ForceCause, 5> kForceCauses{{
+    {"model", "the model predicts another force", &ForceBudget::model},
+    {"lateness", "samples and answers were late, or lost", &ForceBudget::lateness},
+    {"limits", "limits of force and slew, ramps and fades", &ForceBudget::limits},
+    {"involuntary", "no linear filter of the motion explains it: the body's own force",
+     &ForceBudget::involuntary},
+    {"sensor", "noise and steps of the accelerometer", &ForceBudget::sensor},
+}};
+
+/// The motor's force over the measured ticks, as it would have been.
+struct MotorForces {
+  std::vector<double> on_time_n;    ///< had every sample been answered in its tick
+  std::vector<double> unlimited_n;  ///< the same without limits, f_u
+  std::vector<double> noiseless_n;  ///< the same from the true acceleration, f_t
+};
+
+/// Forces of a trial and the motion behind them, 1 kHz over the measured ticks; equally long.
+struct BudgetSignals {
+  std::vector<double> feedthrough_n;        ///< f'
+  std::vector<double> motor_n;              ///< f_m, as applied
+  MotorForces asked;                        ///< of the same ticks
+  std::vector<std::vector<double>> motion;  ///< channels that f' may follow, any unit
+};
+
+/// README Eq. SN-8 to SN-10.  Pure.
+/// @returns nothing for trials shorter than 12 s, or when a force is unknown
+std::optional<ForceBudget> force_budget(const BudgetSignals& signals);
+
+}  // namespace stillhand::session
