@@ -109,6 +109,17 @@ class LabSessionTest(unittest.TestCase):
         self.assertGreater(self.summary["conditions"]["C"]["same_tick_share"], 0.0)
         self.assertLess(self.summary["conditions"]["C"]["sensor_to_force_us"]["p50"], 1000.0)
 
+    def test_what_c_leaves_has_causes_that_add_up_to_it(self):
+        for trial in self.summary["trials"]:
+            if trial["condition"] != "C":
+                self.assertIsNone(trial["lateness"])
+                continue
+            causes = {name: part["force_n"] for name, part in trial["lateness"].items()}
+            left_n = causes.pop("left")
+            self.assertEqual(set(causes), {"model", "lateness", "limits", "involuntary", "sensor"})
+            self.assertAlmostEqual(sum(causes.values()), left_n, delta=1e-9)
+            self.assertGreater(causes["model"], 0.0)
+
     def test_lost_ticks_are_those_of_the_recording(self):
         recording = self.lab.recording(1)
         self.assertEqual(recording["damage"], [])
