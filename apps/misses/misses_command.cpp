@@ -28,6 +28,7 @@ namespace {
 struct Arguments {
   std::string recording;
   double least_ms = 5.0;
+  bool why = false;
   std::filesystem::path json, picture;
 };
 
@@ -91,6 +92,9 @@ int run(const Arguments& arguments) {
   for (const session::Miss& miss : misses) {
     fmt::print("{:<27} {}{}\n", when(miss), session::what_happened(miss),
                miss.waited.empty() ? "" : fmt::format("; {} waited", fmt::join(miss.waited, ", ")));
+    if (!arguments.why) continue;
+    fmt::print("{:27} {}\n", "",
+               miss.why.empty() ? "why is not known" : miss.process + " " + miss.why);
   }
   if (misses.empty()) {
     fmt::print("no process was late by {} ms or more\n", arguments.least_ms);
@@ -125,6 +129,8 @@ void add_misses_command(CLI::App& cli, int& status) {
   verb->add_option("--least-ms", arguments->least_ms, "shortest lateness that is listed [ms]")
       ->check(CLI::Range(1.0, 1e4))
       ->capture_default_str();
+  verb->add_flag("--why", arguments->why,
+                 "also what the kernel knows: no processor, a signal, work, memory from a disk");
   verb->add_option("--json", arguments->json, "write the same as JSON to this file");
   verb->add_option("--picture", arguments->picture,
                    "SVG file: the motor force around the longest lateness");

@@ -59,12 +59,16 @@ struct Service::Reporting {
             status.state(stillhand_msgs::SERVICE_RUNNING);
           }
           service.end_without_experiment();
+          service.note_stall();
         }) {}
   Reporter reporter;
   int without_experiment = 0;  // statuses
 };
 
-Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(options)), stop_(stop) {
+Service::Service(ServiceOptions options, Stop& stop)
+    : options_(std::move(options)),
+      ticks_evenly_(options_.service != topics::kEndsLast),
+      stop_(stop) {
   Bus::Options bus_options;
   bus_options.service = options_.service;
   bus_options.rig = options_.rig;
@@ -128,6 +132,15 @@ void Service::end_without_experiment() {
   const bool gone = std::ranges::find(lost, "experiment") != lost.end();
   reporting_->without_experiment = gone ? reporting_->without_experiment + 1 : 0;
   if (reporting_->without_experiment > kPatience) stop_.request();
+}
+
+// A process that waits for another one's samples is silent, too: the kernel knows no reason of its
+// own for it, and it says nothing.
+void Service::note_stall() {
+  const std::optional<Stall> stall = stall_watch_.step();
+  if (!stall || stall->why.empty()) return;
+  note_event(stillhand_msgs::EVENT_CYCLE_MISSED, stall->why.c_str(), 1e6 * stall->late_s,
+             stillhand_msgs::CODE_STALL);
 }
 
 // The reporter's thread uses the bus, and the bus's threads the reporter: the thread goes first,

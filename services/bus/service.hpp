@@ -12,6 +12,7 @@
 #include "services/bus/bus.hpp"
 #include "services/core/contract/trial.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/system/process/stall_watch.hpp"
 #include "services/system/process/stop.hpp"
 
 namespace CLI {
@@ -61,8 +62,11 @@ class Service {
   /// The newest trial, for the receiving thread.
   [[nodiscard]] const Trial& trial() const noexcept { return trial_; }
 
-  /// Control path: newest tick handled, for the status topic.
-  void note_tick(Tick tick) noexcept { tick_.store(tick, std::memory_order_relaxed); }
+  /// Control path: newest tick handled, for the status topic and for the watch on stalls.
+  void note_tick(Tick tick) noexcept {
+    tick_.store(tick, std::memory_order_relaxed);
+    if (ticks_evenly_) stall_watch_.beat();
+  }
   /// This process is prepared for a trial.
   void note_armed(std::int64_t trial) noexcept { armed_.store(trial, std::memory_order_relaxed); }
   /// The session's state by trial control; the experiment, which writes it, calls this itself.
@@ -80,8 +84,11 @@ class Service {
 
  private:
   void end_without_experiment();
+  void note_stall();
 
   ServiceOptions options_;
+  bool ticks_evenly_;  // a tick after the other, as they come
+  StallWatch stall_watch_;
   Stop& stop_;
   std::unique_ptr<Bus> bus_;
   Trial trial_;

@@ -32,6 +32,7 @@ struct Miss {
   double trial_s = 0.0;             ///< [s] from the first measured tick of the trial
   bool pegged = false;              ///< the trial is the identification
   std::vector<std::string> waited;  ///< processes behind it that were silent with it
+  std::string why;                  ///< what its kernel said of it; empty: nothing
   double force_before_n = 0.0;      ///< [N] RMS of the motor force in the second before
   double zero_s = 0.0;              ///< [s] for how long the motor force was zero then
   double back_s = 0.0;  ///< [s] from then until the force is again what the prediction asks for;

@@ -19,7 +19,8 @@ inline nlohmann::ordered_json json_of(const Miss& miss) {
               {"trial", miss.trial < 0 ? Json() : Json(miss.trial)},
               {"trial_s", miss.trial < 0 ? Json() : Json(miss.trial_s)},
               {"whole_after_s", std::isfinite(miss.back_s) ? Json(miss.back_s) : Json()},
-              {"waited", miss.waited}};
+              {"waited", miss.waited},
+              {"why", miss.why.empty() ? Json() : Json(miss.why)}};
 }
 
 }  // namespace stillhand::session

@@ -38,7 +38,9 @@ struct Stop::Watcher {
 
 Stop::Stop() : watcher_(std::make_unique<Watcher>()) {
   const sigset_t set = watched_signals();
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  sigset_t blocked = set;
+  sigaddset(&blocked, SIGCONT);  // which continues the process all the same: StallWatch counts it
+  pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
   // A pipe whose reader left shows as a failed write, not as a signal.
   std::signal(SIGPIPE, SIG_IGN);
   watcher_->thread = std::thread([this, set] {

@@ -11,7 +11,8 @@
 namespace stillhand::runtime {
 
 /// Turns SIGINT and SIGTERM into a flag.  Create it before any other thread starts: it blocks both
-/// signals for every thread made after it and waits for them in one of its own.
+/// signals for every thread made after it and waits for them in one of its own.  SIGCONT is
+/// blocked, too.
 class Stop {
  public:
   Stop();

@@ -191,6 +191,24 @@ TEST(MissesTest, TheForceIsJudgedToTheEndOfTheTrial) {
   EXPECT_TRUE(std::isnan(sut.front().back_s));
 }
 
+// Of another silence, another process, or another length, it says nothing of this one.
+TEST(MissesTest, TheReasonIsWhatTheProcessSaidOfThisSilence) {
+  const auto why = [](const std::string& source, Tick said_at, double by_us) {
+    SessionRecording recording = session({{"sensing", 2000, 2073}});
+    auto& event = recording.events.emplace_back();
+    event.code(stillhand_msgs::CODE_STALL);
+    event.source(source);
+    event.stamp_ns(said_at * kTick_ns);
+    event.by_us(by_us);
+    event.text("stopped by a signal");
+    return misses_in(recording).at(0).why;
+  };
+  EXPECT_EQ(why("sensing", 2200, 73'400), "stopped by a signal");
+  EXPECT_EQ(why("cancellation", 2200, 73'400), "");
+  EXPECT_EQ(why("sensing", 1900, 73'400), "");
+  EXPECT_EQ(why("sensing", 2200, 20'000), "");
+}
+
 TEST(MissesTest, AnEmptyRecordingHasNone) { EXPECT_THAT(misses_in({}), IsEmpty()); }
 
 }  // namespace

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/system/process/stall_watch.hpp"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "services/system/process/clock.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+constexpr std::int64_t kLeast_ns = 5'000'000;
+
+sigset_t continue_signal() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGCONT);
+  return set;
+}
+
+std::string milliseconds(std::int64_t ns) {
+  return std::to_string((ns + 500'000) / 1'000'000) + " ms";
+}
+
+}  // namespace
+
+std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const ThreadAccount& earlier,
+                       const ThreadAccount& before, const ThreadAccount& after) {
+  if (before.at_ns == 0 || before.at_ns > from_ns || after.at_ns < until_ns) return {};
+  const std::int64_t silent_ns = until_ns - from_ns;
+  // The share of the time outside of the silence that the thread usually spends so.
+  const auto beyond_usual_ns = [&](std::int64_t ThreadAccount::* spent) {
+    const std::int64_t usual_ns = before.at_ns - earlier.at_ns;
+    const double share =
+        earlier.at_ns == 0 || usual_ns <= 0
+            ? 0.0
+            : static_cast<double>(before.*spent - earlier.*spent) / static_cast<double>(usual_ns);
+    const auto outside_ns = static_cast<double>(after.at_ns - before.at_ns - silent_ns);
+    return static_cast<std::int64_t>(static_cast<double>(after.*spent - before.*spent) -
+                                     share * outside_ns);
+  };
+  const auto most_of_it = [&](std::int64_t spent_ns) { return spent_ns > silent_ns / 2; };
+  if (after.continued > before.continued) return "stopped by a signal";
+  if (const std::int64_t waited_ns = beyond_usual_ns(&ThreadAccount::waited_ns);
+      most_of_it(waited_ns)) {
+    return "waited " + milliseconds(waited_ns) + " for a processor";
+  }
+  if (const std::int64_t ran_ns = beyond_usual_ns(&ThreadAccount::ran_ns); most_of_it(ran_ns)) {
+    return "worked for " + milliseconds(ran_ns);
+  }
+  if (const std::int64_t pages = after.disk_pages - before.disk_pages; pages > 0) {
+    return "waited for " + std::to_string(pages) + " pages of memory from a disk";
+  }
+  return {};
+}
+
+StallWatch::StallWatch() {
+  const sigset_t set = continue_signal();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+void StallWatch::beat() noexcept {
+  const std::int64_t now_ns = monotonic_ns();
+  const std::int64_t from_ns = std::exchange(last_ns_, now_ns);
+  if (from_ns == 0) {
+    thread_.store(gettid(), std::memory_order_relaxed);
+    return;
+  }
+  if (now_ns - from_ns >= kLeast_ns) silences_.push({from_ns, now_ns});
+}
+
+ThreadAccount StallWatch::account() {
+  const sigset_t set = continue_signal();
+  const timespec at_once{};
+  while (sigtimedwait(&set, nullptr, &at_once) == SIGCONT) ++continued_;
+  const std::string folder = "/proc/self/task/" + std::to_string(thread_.load()) + "/";
+  ThreadAccount account;
+  account.continued = continued_;
+  std::ifstream(folder + "schedstat") >> account.ran_ns >> account.waited_ns;
+  // "pid (name) state ppid pgrp session tty tpgid flags minflt cminflt majflt ...": a name may hold
+  // spaces and brackets.
+  std::ifstream stat(folder + "stat");
+  stat.ignore(std::numeric_limits<std::streamsize>::max(), '(');
+  std::string rest;
+  std::getline(stat, rest);
+  constexpr int kMajorFault = 10;  // words behind the name
+  std::istringstream words(rest.substr(std::min(rest.size(), rest.rfind(')') + 1)));
+  std::string word;
+  for (int n = 0; n < kMajorFault && words >> word; ++n) {
+  }
+  if (words) account.disk_pages = std::strtoll(word.c_str(), nullptr, 10);
+  account.at_ns = monotonic_ns();
+  return account;
+}
+
+std::optional<Stall> StallWatch::step() {
+  if (thread_.load(std::memory_order_relaxed) == 0) return std::nullopt;
+  // First the silences, then the account: they ended before it.
+  Silence longest{};
+  silences_.consume_all([&](const Silence& each) {
+    if (each.until_ns - each.from_ns > longest.until_ns - longest.from_ns) longest = each;
+  });
+  std::ranges::rotate(accounts_, accounts_.end() - 1);
+  accounts_.front() = account();
+  if (longest.until_ns == 0) return std::nullopt;
+  const auto* before =
+      std::find_if(accounts_.begin() + 1, accounts_.end(),
+                   [&](const ThreadAccount& each) { return each.at_ns <= longest.from_ns; });
+  Stall stall;
+  stall.late_s = 1e-9 * static_cast<double>(longest.until_ns - longest.from_ns);
+  if (before != accounts_.end()) {
+    const ThreadAccount earlier = before + 1 == accounts_.end() ? ThreadAccount{} : before[1];
+    stall.why = why_silent(longest.from_ns, longest.until_ns, earlier, *before, accounts_.front());
+  }
+  return stall;
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace stillhand::runtime {
+
+/// What the kernel counted for a thread, proc_pid_schedstat(5) and proc_pid_stat(5).
+struct ThreadAccount {
+  std::int64_t at_ns = 0;       ///< when it was read
+  std::int64_t ran_ns = 0;      ///< on a processor
+  std::int64_t waited_ns = 0;   ///< runnable, without a processor
+  std::int64_t disk_pages = 0;  ///< page faults that a disk had to answer
+  std::int64_t continued = 0;   ///< SIGCONT that came
+};
+
+/// A thread that stood still.
+struct Stall {
+  double late_s = 0.0;  ///< from one beat to the next
+  std::string why;      ///< "waited 71 ms for a processor"; empty: the kernel does not tell
+};
+
+/// Why a thread was silent from `from_ns` to `until_ns`: what the account grew by in this time,
+/// beyond what it grows by otherwise.  Pure.
+/// @param earlier  the account before `before`: the usual growth
+/// @param before   the last one before the silence
+/// @param after    the first one behind it
+std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const ThreadAccount& earlier,
+                       const ThreadAccount& before, const ThreadAccount& after);
+
+/// Notices that a thread stood still, and says why.  Needs no rights: a process may read its own
+/// accounts.  Costs the thread one reading of the clock a beat.
+class StallWatch {
+ public:
+  /// Blocks SIGCONT for this thread and those it starts, so that step() can count it; a thread that
+  /// does not block it takes it away.
+  StallWatch();
+
+  /// From the thread that is watched, once a turn.  Never locks or allocates.
+  void beat() noexcept;
+  /// From another thread, ten times a second.
+  /// @return a silence of 5 ms or more that ended since the call before: the longest
+  std::optional<Stall> step();
+
+ private:
+  [[nodiscard]] ThreadAccount account();
+
+  std::atomic<pid_t> thread_{0};
+  std::int64_t last_ns_ = 0;  // of the thread that is watched
+  struct Silence {
+    std::int64_t from_ns, until_ns;
+  };
+  boost::lockfree::spsc_queue<Silence, boost::lockfree::capacity<16>> silences_;
+  std::array<ThreadAccount, 4> accounts_{};  // newest first
+  std::int64_t continued_ = 0;
+};
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/system/process/stall_watch.hpp"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <string>
+#include <thread>
+
+#include "services/system/process/clock.hpp"
+#include "tests/support/wait.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// An account at a time, all in ms but the counts.
+ThreadAccount at(std::int64_t ms, std::int64_t ran, std::int64_t waited, std::int64_t pages = 0,
+                 std::int64_t continued = 0) {
+  return {ms * kMs, ran * kMs, waited * kMs, pages, continued};
+}
+
+/// Of a silence from 210 to 280 ms, with accounts at 100, 200 and 300 ms; the thread usually works
+/// for a tenth of its time.
+std::string why(const ThreadAccount& after) {
+  return why_silent(210 * kMs, 280 * kMs, at(100, 10, 1), at(200, 20, 2), after);
+}
+
+TEST(WhySilentTest, NamesWhatGrewBeyondItsUsualGrowth) {
+  EXPECT_EQ(why(at(300, 23, 72)), "waited 70 ms for a processor");
+  EXPECT_EQ(why(at(300, 93, 2)), "worked for 70 ms");
+  EXPECT_EQ(why(at(300, 23, 2, 4)), "waited for 4 pages of memory from a disk");
+  EXPECT_EQ(why(at(300, 23, 2, 0, 1)), "stopped by a signal");
+}
+
+TEST(WhySilentTest, DoesNotGuess) {
+  EXPECT_EQ(why(at(300, 23, 2)), "");   // asleep: it waited for somebody
+  EXPECT_EQ(why(at(300, 50, 30)), "");  // a bit of everything
+  // No account of before, or none of after.
+  EXPECT_EQ(why_silent(210 * kMs, 280 * kMs, {}, {}, at(300, 23, 90)), "");
+  EXPECT_EQ(why_silent(210 * kMs, 280 * kMs, {}, at(200, 20, 2), at(250, 23, 90)), "");
+}
+
+/// A thread that beats each millisecond until it is told otherwise, and the watch on it.
+class Watched {
+ public:
+  Watched() : thread_([this] { work(); }) {
+    for (int n = 0; n < 3; ++n) EXPECT_FALSE(after_a_while());
+  }
+  ~Watched() {
+    ends_ = true;
+    thread_.join();
+  }
+  /// It does this once, between two beats.
+  void once(void (*what)()) { next_ = what; }
+  std::optional<Stall> after_a_while() {
+    sleep_until_ns(monotonic_ns() + 100 * kMs);
+    return watch_.step();
+  }
+  /// The first silence of at least 30 ms.
+  std::optional<Stall> stall() {
+    std::optional<Stall> found;
+    support::eventually([&] {
+      found = after_a_while();
+      return found && found->late_s > 0.03;
+    });
+    return found;
+  }
+
+ private:
+  void work() {
+    while (!ends_) {
+      watch_.beat();
+      sleep_until_ns(monotonic_ns() + kMs);
+      if (const auto what = next_.exchange(nullptr)) what();
+    }
+  }
+
+  StallWatch watch_;
+  std::atomic<bool> ends_{false};
+  std::atomic<void (*)()> next_{nullptr};
+  std::thread thread_;
+};
+
+void work_for_60_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  const std::int64_t until_ns = now.tv_sec * kNsPerSecond + now.tv_nsec + 60 * kMs;
+  do {
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  } while (now.tv_sec * kNsPerSecond + now.tv_nsec < until_ns);
+}
+
+// On a machine with nobody else's work, what it did is what the kernel says; next to others the
+// thread may also wait for a processor for longer than it works.
+TEST(StallWatchTest, NamesWorkThatLastsTooLong) {
+  Watched sut;
+  sut.once(&work_for_60_ms);
+  const auto stall = sut.stall();
+  ASSERT_TRUE(stall);
+  EXPECT_TRUE(stall->why.starts_with("worked for ") || stall->why.starts_with("waited ") ||
+              stall->why.empty())
+      << stall->why;
+  EXPECT_GE(stall->late_s, 0.06);
+}
+
+TEST(StallWatchTest, ASleepHasNoReasonOfItsOwn) {
+  Watched sut;
+  sut.once([] { sleep_until_ns(monotonic_ns() + 200 * kMs); });
+  const auto stall = sut.stall();
+  ASSERT_TRUE(stall);
+  EXPECT_EQ(stall->why, "");
+}
+
+/// Ends with 0 when a stop of the whole process is named.
+[[noreturn]] void stopped_and_continued() {
+  Watched sut;
+  const pid_t self = getpid();
+  if (fork() == 0) {
+    kill(self, SIGSTOP);
+    sleep_until_ns(monotonic_ns() + 150 * kMs);
+    kill(self, SIGCONT);
+    _exit(0);
+  }
+  const auto stall = sut.stall();
+  _exit(stall && stall->why == "stopped by a signal" ? 0 : 1);
+}
+
+TEST(StallWatchDeathTest, NamesASignalThatStoppedTheProcess) {
+  EXPECT_EXIT(stopped_and_continued(), testing::ExitedWithCode(0), "");
+}
+
+}  // namespace
+}  // namespace stillhand::runtime
