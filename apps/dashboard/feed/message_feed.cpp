@@ -120,10 +120,11 @@ void MessageFeed::decode(const Message& message, Use use) {
 
 void MessageFeed::take_stream(const Known& known, const Message& message) {
   if (known.row == &topics::kSensed) {
-    decode<stillhand_msgs::Sensed>(message, [this](const auto& sensed) {
+    decode<stillhand_msgs::Sensed>(message, [this, at_ns = message.arrived_ns](const auto& sensed) {
       health_.chain().sensed(sensed.acquired_ns(),
                              difference_ns(sensed.stamp_ns(), ahead_of_rig_ns("sensing")));
       traces_.put(sensed.tick(), Signal::kAcceleration, sensed.accel_y_m_s2());
+      if (forces_hidden(at_ns)) return;
       traces_.put(sensed.tick(), Signal::kForce, sensed.force_n());
       forces_.measured(sensed.tick(), sensed.force_n());
     });
@@ -148,7 +149,7 @@ void MessageFeed::take_stream(const Known& known, const Message& message) {
     decode<stillhand_msgs::RigTruth>(
         message, [this, at_ns = message.arrived_ns](const auto& truth) {
           health_.chain().used(truth.motor_tick(), truth.stamp_ns());
-          if (motor_hidden(at_ns)) return;
+          if (forces_hidden(at_ns)) return;
           traces_.put(truth.tick(), Signal::kMotorForce, truth.motor_force_n());
         });
   } else if (known.row == &topics::kTrackingSample) {
@@ -267,10 +268,11 @@ void MessageFeed::take_status(const stillhand_msgs::ServiceStatus& status, std::
   services_[number] = std::move(view);
 }
 
-// While a person tracks, a motor force reveals that this trial cancels.  A trial is announced
+// While a person tracks, a motor force reveals that this trial cancels; so does the hand's, which
+// answers it and then follows the prediction.  A trial is announced
 // before it begins.  Before the first announcement came, one may run, and one that is stopped
 // leaves a force that goes to zero.
-bool MessageFeed::motor_hidden(std::int64_t at_ns) const noexcept {
+bool MessageFeed::forces_hidden(std::int64_t at_ns) const noexcept {
   constexpr std::int64_t kFades_ns = 1'000'000'000;
   const bool faded = tracked_ns_ == 0 || difference_ns(at_ns, tracked_ns_) > kFades_ns;
   return options_.blinded && (!control_ || !faded || tracks());

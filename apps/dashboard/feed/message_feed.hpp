@@ -148,7 +148,7 @@ class MessageFeed {
   [[nodiscard]] bool tracks() const noexcept {
     return control_ && control_->phase() == stillhand_msgs::PHASE_TRACKING;
   }
-  [[nodiscard]] bool motor_hidden(std::int64_t at_ns) const noexcept;
+  [[nodiscard]] bool forces_hidden(std::int64_t at_ns) const noexcept;
   [[nodiscard]] std::int64_t system_ahead_ns(const std::string& service) const;
   [[nodiscard]] std::int64_t ahead_of_rig_ns(const std::string& service) const;
 

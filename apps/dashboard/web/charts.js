@@ -9,9 +9,9 @@ const STEP_TICKS = 20; // between two rows of the dashboard
 const DESCRIBED_MS = 2000;
 const FIGURES = [
   { title: "Acceleration [m/s²]", series: [{ name: "accel_y_m_s2", key: "platform, positive to the right" }], least: 1 },
-  { title: "Force of the hand [N]", series: [{ name: "force_n", key: "measured" }, { name: "predicted_force_n", key: "predicted by the model" }], least: 1 },
-  { title: "Residual [N]", series: [{ name: "residual_n", key: "measured − predicted" }], least: 1 },
-  { title: "Motor force [N]", series: [{ name: "motor_force_n", key: "on the stick" }], limits: true, least: 1 },
+  { title: "Force of the hand [N]", series: [{ name: "force_n", key: "measured" }, { name: "predicted_force_n", key: "predicted by the model" }], least: 1, blinds: true },
+  { title: "Residual [N]", series: [{ name: "residual_n", key: "measured − predicted" }], least: 1, blinds: true },
+  { title: "Motor force [N]", series: [{ name: "motor_force_n", key: "on the stick" }], limits: true, least: 1, blinds: true },
   { title: "Screen [mm]", series: [{ name: "target_mm", key: "target" }, { name: "cursor_mm", key: "cursor" }], least: 50 },
 ];
 
@@ -85,7 +85,7 @@ class Chart {
       add(row.tick, this.figure.series.map(({ name }) => row[name]));
       last = row.tick;
     }
-    write(this.note, hidden && this.figure.limits ? "hidden while a person tracks (blinded)" : "");
+    write(this.note, hidden && this.figure.blinds ? "hidden while a person tracks; --unblinded shows it" : "");
     this.describe(columns);
     if (this.plot) this.plot.setData(columns); else this.draw(columns);
   }

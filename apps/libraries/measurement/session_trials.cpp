@@ -13,6 +13,7 @@
 #include "idl/topics.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/device_rig/parts_note.hpp"
+#include "services/core/recording/experiment_record.hpp"
 #include "services/core/recording/sample_clock.hpp"
 #include "services/messages/recording/named_writers.hpp"
 
@@ -165,6 +166,9 @@ bool less_wanted(const SessionTrial& a, const SessionTrial& b) {
 
 std::string SessionTrial::name() const {
   const double length_s = static_cast<double>(end_tick - trial.start_tick) * kControlPeriod_s;
+  if (blinded && trial.phase == TrialPhase::kTracking) {
+    return fmt::format("{} ({:.4g} s)", trial.number, length_s);
+  }
   return fmt::format("{} ({}, {:.4g} s)", trial.number,
                      named.empty() ? std::string(1, letter) : named, length_s);
 }
@@ -192,6 +196,8 @@ SessionTrials find_trials(recording::McapReader& reader, const std::string& path
       });
   SessionTrials found = finder.finish(path);
   if (!status.ok()) found.broken = status.text;
+  const bool of_experiment = reader.find_metadata(recording::kExperimentRecord) != nullptr;
+  for (SessionTrial& trial : found.trials) trial.blinded = of_experiment;
   return found;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/recording/experiment_record.hpp"
 #include "services/core/recording/mcap/mcap_reader.hpp"
 #include "services/files/recording/file_io.hpp"
 
@@ -17,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFileName = "session.mcap";
-constexpr const char* kExperiment = "stillhand.experiment";
 
 std::vector<fs::path> folders_in(const fs::path& parent) {
   std::vector<fs::path> out;
@@ -71,12 +71,13 @@ SessionFile session_file(const fs::path& folder) {
   if (!reader.status().ok()) {
     throw ConfigError(out.path.string(), reader.status().text, "an MCAP recording of a session");
   }
-  if (const recording::Metadata* metadata = reader.find_metadata(kExperiment)) {
+  if (const recording::Metadata* metadata = reader.find_metadata(recording::kExperimentRecord)) {
     out.participant = text_of(*metadata, "participant");
     out.session = text_of(*metadata, "session");
     out.digest = text_of(*metadata, "digest");
     if (out.participant.empty() || out.session.empty()) {
-      throw ConfigError(out.path.string(), std::string(kExperiment) + " without its keys",
+      throw ConfigError(out.path.string(),
+                        std::string(recording::kExperimentRecord) + " without its keys",
                         "the keys participant, session and digest");
     }
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "services/core/recording/experiment_record.hpp"
 #include "services/core/recording/mcap/mcap_format.hpp"
 
 namespace CLI {
@@ -11,9 +12,6 @@ class App;
 }
 
 namespace stillhand::recording {
-
-/// Name of the metadata record of a recording that belongs to an experiment with participants.
-inline constexpr const char* kExperimentRecord = "stillhand.experiment";
 
 /// The place of a recording in an experiment (apps/experiment).  A participant is a code: no name
 /// of a person goes into a recording.

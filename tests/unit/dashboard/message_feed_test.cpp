@@ -58,9 +58,10 @@ class MessageFeedTest : public ::testing::Test {
          event, 0);
   }
   TopicReport truths() const { return sut_.health().topics().at(3).report(kBegin); }
-  // A second of the rig with a force of the motor.
+  // A second of the rig with a force of the motor, and the hand's that answers it.
   void push(MessageFeed& feed) {
     const std::uint32_t source = add(topics::kRigTruth, feed);
+    const std::uint32_t sensing = add(topics::kSensed, feed);
     for (Tick tick = 0; tick < 1000; ++tick) {
       stillhand_msgs::RigTruth truth;
       truth.rig(1);
@@ -69,11 +70,18 @@ class MessageFeedTest : public ::testing::Test {
       truth.motor_tick(-1);
       truth.motor_force_n(7.0);
       take(feed, source, truth, tick);
+      stillhand_msgs::Sensed sensed;
+      sensed.rig(1);
+      sensed.tick(tick);
+      sensed.force_n(7.0);
+      take(feed, sensing, sensed, tick);
     }
   }
   static bool shows_force(const MessageFeed& feed) {
     for (const auto& row : feed.traces().rows()) {
-      if (row.values[static_cast<std::size_t>(Signal::kMotorForce)] == 7.0) return true;
+      for (const Signal each : {Signal::kMotorForce, Signal::kForce}) {
+        if (row.values[static_cast<std::size_t>(each)] == 7.0) return true;
+      }
     }
     return false;
   }

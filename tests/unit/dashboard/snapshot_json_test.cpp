@@ -168,12 +168,12 @@ TEST_F(SnapshotJsonTest, TracesAreRoundedToTenMicronewtonsAndBeginBehindTheGiven
     stillhand_msgs::Sensed sensed;
     sensed.rig(1);
     sensed.tick(tick);
-    sensed.force_n(1.0 / 3.0);
+    sensed.accel_y_m_s2(1.0 / 3.0);
     take(source, sensed, tick);
   }
   const auto traces = snapshot({}, 200).at("traces");
   EXPECT_EQ(traces.at("tick"), nlohmann::json({220, 240, 260, 280, 300, 320, 340}));
-  for (const auto& value : traces.at("force_n")) EXPECT_EQ(value, 0.33333);
+  for (const auto& value : traces.at("accel_y_m_s2")) EXPECT_EQ(value, 0.33333);
   for (const auto& value : traces.at("cursor_m")) EXPECT_TRUE(value.is_null());
 }
 

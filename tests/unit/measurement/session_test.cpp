@@ -45,8 +45,9 @@ void run_ticks(SessionFile& file, std::int64_t first, std::int64_t end, bool tra
 }
 
 // Identification of 200 ticks, B of 300, A of 400, with a ramp of 20 ticks around each.
-std::vector<std::byte> session() {
+std::vector<std::byte> session(bool of_experiment = false) {
   SessionFile file(16384);
+  if (of_experiment) file.metadata("stillhand.experiment", {{"participant", "P01"}});
   file.assignment(0, MOTION_BAND_NOISE, false);
   file.control(0, PHASE_PEGGED, 100, 200);
   run_ticks(file, 0, 320);
@@ -90,6 +91,15 @@ TEST(SessionTest, TheMeasuredPartOfTheIdentificationIsTakenUnlessTold) {
   }
   EXPECT_THAT(sut.notes, ElementsAre("Trial 0 (I, 0.2 s) of the session; there are also "
                                      "1 (B, 0.3 s), 2 (A, 0.4 s)."));
+}
+
+// Blinding protects against reading a condition by accident.
+TEST(SessionTest, ATrialOfAnExperimentDoesNotNameItsCondition) {
+  const std::string path = file_of(session(true));
+  EXPECT_THAT(
+      read_measurement(path).notes,
+      ElementsAre("Trial 0 (I, 0.2 s) of the session; there are also 1 (0.3 s), 2 (0.4 s)."));
+  EXPECT_THAT(error_of(path, "7"), HasSubstr("one of 0 (I, 0.2 s), 1 (0.3 s), 2 (0.4 s) in "));
 }
 
 TEST(SessionTest, ARigOfDevicesIsNamed) {
