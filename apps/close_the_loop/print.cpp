@@ -20,7 +20,8 @@ std::string mean_text(const Estimate& estimate, const Measure& measure) {
 void print_measures(const Conditions& conditions) {
   fmt::print("\n{:<32}", "");
   for (const char* label : kConditions) fmt::print(" {:>8}", label);
-  for (const auto& [from, to] : kSteps) fmt::print("   {:<24}", step_name(from, to));
+  for (const auto& [from, to] : kSteps)
+    fmt::print("   {:<24}", fmt::format("{} less {}", to, from));
   fmt::print("\n");
   for (std::size_t k = 0; k < kMeasures.size(); ++k) {
     const Measure& measure = kMeasures[k];

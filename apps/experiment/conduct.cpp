@@ -59,7 +59,7 @@ void refuse_if_over(const Progress& progress, std::size_t index) {
 
 }  // namespace
 
-std::size_t next_participant(const Folder& folder) {
+std::optional<std::size_t> next_participant(const Folder& folder) {
   for (std::int64_t n = 0; n < folder.design().participants; ++n) {
     const auto index = static_cast<std::size_t>(n);
     const std::filesystem::path file = folder.journal(index);
@@ -67,8 +67,7 @@ std::size_t next_participant(const Folder& folder) {
     const Progress progress = progress_of(folder, plan, read_journal(file), file.string());
     if (!progress.complete() && progress.excluded().empty()) return index;
   }
-  throw ConfigError(folder.path().string(), "every planned participant complete or excluded",
-                    "nothing more to run: `stillhand experiment status`");
+  return std::nullopt;
 }
 
 int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtime::Stop& stop) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "apps/experiment/folder.hpp"
@@ -11,8 +12,8 @@
 namespace stillhand::experiment {
 
 /// Participant that `run` takes without --participant: the first whose protocol is not complete and
-/// who is not excluded.  @throws ConfigError when there is none
-std::size_t next_participant(const Folder& folder);
+/// who is not excluded; none: the experiment is over.
+std::optional<std::size_t> next_participant(const Folder& folder);
 
 /// Conducts one session of a participant over the bus, from the first step of the protocol that is
 /// not done to the last, and writes each step into the journal when it is done.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/experiment/experiment_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -15,6 +18,7 @@
 #include "apps/experiment/status.hpp"
 #include "apps/experiment/unblind.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "apps/libraries/session/instructions.hpp"
 #include "apps/libraries/session/protocol.hpp"
@@ -63,9 +67,14 @@ void make(Typed typed) {
   if (has_model && !std::filesystem::is_regular_file(typed.control_model)) {
     throw ConfigError("--control-model", typed.control_model.string(), "a file");
   }
+  const bool wants_model = std::ranges::count(typed.design.conditions, "C+") > 0;
+  if (wants_model != has_model) {
+    throw ConfigError("--control-model", has_model ? typed.control_model.string() : "nothing",
+                      "a file with condition C+, and none without it");
+  }
   if (has_model) typed.design.control_model = "control_model.json";
   // As the file would be read: `run` refuses no folder that was made here.
-  design_of(yaml_of(typed.design), "experiment.yaml of these options");
+  design_of(yaml_of(typed.design), "the experiment.yaml that these options give");
   make_folder(typed.folder, typed.design, typed.seed ? *typed.seed : random_seed());
   if (has_model) {
     std::filesystem::copy_file(typed.control_model, typed.folder / typed.design.control_model);
@@ -74,23 +83,41 @@ void make(Typed typed) {
               (typed.folder / kDesignFile).c_str(), typed.folder.c_str());
 }
 
+// Of an experiment with everybody complete or excluded.
+void say_after(const Folder& folder) {
+  report::say_next(fmt::format("stillhand experiment {} {}",
+                               folder.unblinded() ? "report" : "unblind",
+                               report::quoted_for_shell(folder.path())));
+}
+
 int run(Typed typed) {
   typed.lab.real_time = !typed.ordinary;
   const Folder folder(typed.folder);
-  const std::size_t index =
+  const std::optional<std::size_t> index =
       typed.participant.empty()
           ? next_participant(folder)
           : participant_index(typed.participant, folder.design().participants);
+  if (!index) {
+    std::puts("every planned participant is complete or excluded");
+    say_after(folder);
+    return 0;
+  }
   runtime::Stop stop;
-  const int status = conduct(folder, index, typed.lab, stop);
+  const int status = conduct(folder, *index, typed.lab, stop);
   report::say_next("stillhand experiment status " + typed.folder.string());
   return status;
 }
 
 int show_status(const Typed& typed) {
-  const Overview overview = overview_of(Folder(typed.folder));
+  const Folder folder(typed.folder);
+  const Overview overview = overview_of(folder);
   std::fputs(overview.table.c_str(), stdout);
   for (const std::string& finding : overview.findings) runtime::remark(finding);
+  if (overview.findings.empty() && next_participant(folder)) {
+    report::say_next("stillhand experiment run " + report::quoted_for_shell(typed.folder));
+  } else if (overview.findings.empty()) {
+    say_after(folder);
+  }
   return overview.findings.empty() ? 0 : 2;
 }
 

@@ -269,15 +269,17 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
   std::vector<session::Disturbance> worst = result.disturbances;
   std::ranges::stable_sort(worst, std::greater(),
                            [](const session::Disturbance& each) { return each.miss.late_s; });
+  if (worst.size() > kMost) worst.resize(kMost);
+  std::ranges::stable_sort(worst, {},
+                           [](const session::Disturbance& each) { return each.miss.from_ns; });
   std::vector<std::string> lines;
   for (const auto& [label, miss] : worst) {
-    if (lines.size() == kMost) break;
     lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::in_words(label),
                                 miss.trial_s, session::what_happened(miss)));
   }
-  if (worst.size() > kMost) {
-    lines.push_back(fmt::format("{} more times: `stillhand misses` lists them on session.mcap",
-                                worst.size() - kMost));
+  if (const std::size_t all = result.disturbances.size(); all > kMost) {
+    lines.push_back(
+        fmt::format("{} shorter ones: `stillhand misses` lists them on session.mcap", all - kMost));
   }
   return lines;
 }

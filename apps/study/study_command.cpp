@@ -201,11 +201,12 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--motor-delay")
       ->excludes("--answer-wait")
       ->excludes("--undeclared-effect");
-  CLI::Option* mitigations =
-      study->add_option("--mitigations", arguments->campaign.mitigations,
-                        "instead of a study: the table of mitigations, each in every task and "
-                        "motion, with the own, the average and another subject's model. all, or "
-                        "names such as signal,force,damping. Default: 48 subjects, trials of 60 s");
+  CLI::Option* mitigations = study->add_option(
+      "--mitigations", arguments->campaign.mitigations,
+      "instead of a study: the table of mitigations, each in every task and "
+      "motion, with the own, the average and another subject's model; 48 subjects "
+      "and trials of 60 s by default. comma-separated: " +
+          session::known_conditions(session::kMitigations));
   for (const char* name :
        {"--conditions", "--canceller", "--wrong-models", "--stick-damping", "--motor-delay",
         "--answer-wait", "--undeclared-effect", "--explain-paper", "--calibrate"}) {

@@ -3,6 +3,9 @@
 _stillhand() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}
   local next help words choices= earlier= each
+  [[ $word == = ]] && word=  # --option=value comes as three words
+  [[ $before == = || ${COMP_WORDS[COMP_CWORD]} == = ]] && before=${COMP_WORDS[COMP_CWORD-1]}
+  [[ $before == = ]] && before=${COMP_WORDS[COMP_CWORD-2]}
   local -a path=()
   for next in "${COMP_WORDS[@]:1:COMP_CWORD-1}" ""; do
     help=$("${COMP_WORDS[0]}" "${path[@]}" --help 2>/dev/null) || return
@@ -28,7 +31,7 @@ _stillhand() {
   fi
   COMPREPLY=()
   for each in $words; do
-    [[ $earlier$each == "$word"* ]] && COMPREPLY+=("$earlier${each//\'/\\\'}")
+    [[ $earlier$each == "$word"* && ,$earlier != *",$each,"* ]] && COMPREPLY+=("$earlier${each//\'/\\\'}")
   done
 }
 complete -o default -F _stillhand stillhand

@@ -77,7 +77,10 @@ def verb(name, *words, **options):
 def read_csv(path):
     """A table with titles `name [unit]`, as every verb writes and reads it."""
     with open(path, newline="", encoding="utf-8") as file:
-        titles = next(csv.reader(file))
+        titles = next(csv.reader(file), [])
+        if len(titles) < 2:
+            raise ValueError(f"{path}: got {titles}, want titles `name [unit]` with commas between them; "
+                             "the verbs also read other tables")
         rows = list(csv.reader(file))
     columns, units = {}, {}
     for i, title in enumerate(titles):

@@ -391,7 +391,7 @@ class RefusalTest(ExperimentTestCase):
         for words, expected in ((("--conditions", "A,D"), "in one process alone"),
                                 (("--conditions", "A,Q"), "A, B, C, C' or C+"),
                                 (("--operator", "cat"), "simulated, mouse or gamepad"),
-                                (("--trials", "99"), "experiment.yaml of these options:10:9: experiment.trials")):
+                                (("--trials", "99"), "the experiment.yaml that these options give:10:9: experiment.trials")):
             _, errors = experiment("new", self.study, *words, status=2)
             self.assertEqual(len(errors.splitlines()), 1)
             self.assertIn(expected, errors)

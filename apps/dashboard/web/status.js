@@ -92,7 +92,7 @@ export function showStatus(snapshot) {
     stripOfAlarms(shown, session.state, now, recording ? `; ${title}` : "");
   } else if (session.state === "running" || session.state === "paused") {
     const paused = session.state === "paused" || session.paused ? "no trial begins until Start is pressed; " : "";
-    const before = alarms.length > 0 ? `; ${alarms.length} earlier alarm${alarms.length === 1 ? "" : "s"}` : "";
+    const before = alarms.length > 0 ? `; ${alarms.length} earlier alarm${alarms.length === 1 ? "" : "s"}, over now` : "";
     strip("healthy", WORDS.healthy, paused + title + before, recording ? clock(now) : `since ${clock(snapshot.level_since_ms)}\n${span(now - snapshot.level_since_ms)}`);
   } else {
     const absent = snapshot.services.filter(({ state }) => state === undefined).map(({ service }) => service);

@@ -176,7 +176,7 @@ export class Tables {
         ["measured", `${Math.min(Math.max(at, 0), session.duration_ticks / 1000).toFixed(0)} of ${(session.duration_ticks / 1000).toFixed(0)} s`]);
     }
     if (session.engaging) parts.push(["platform", "engages: it moves slowly to its place"]);
-    parts.push(["condition", session.condition ?? (session.blinded ? "hidden (blinded)" : "–")]);
+    parts.push(["condition", session.condition ?? (session.blinded ? "hidden; --unblinded shows it" : "–")]);
     if (session.rig_parts) parts.push(["rig of devices", session.rig_parts]);
     if (session.replayed) parts.push(["replay", "a recording is played on this domain"]);
     parts.push([mode === "live" ? "now" : "instant", clock(now)]);

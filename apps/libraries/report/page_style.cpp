@@ -52,7 +52,11 @@ constexpr std::string_view kContent = R"(
 figure { margin: 1.4rem 0; }
 figcaption { font-size: .9rem; color: var(--faint); margin: .45rem 0; max-width: 52rem; }
 figcaption b { color: var(--text); }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto; scrollbar-width: thin; background:
+  linear-gradient(to right, var(--ground) 30px, transparent) left / 60px 100% no-repeat local,
+  linear-gradient(to left, var(--ground) 30px, transparent) right / 60px 100% no-repeat local,
+  linear-gradient(to right, #0003, transparent) left / 12px 100% no-repeat scroll,
+  linear-gradient(to left, #0003, transparent) right / 12px 100% no-repeat scroll; }
 .card { background: #ffffff; border: 1px solid var(--rule); border-radius: 8px; padding: 10px; }
 .card svg { display: block; width: 100%; max-width: var(--width);
   min-width: min(600px, var(--width)); height: auto; margin: 0 auto; }

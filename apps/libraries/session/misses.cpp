@@ -295,7 +295,8 @@ std::vector<Miss> misses_in(const SessionRecording& session, double least_s) {
 std::string what_happened(const Miss& miss) {
   std::string text = fmt::format("{} was late by {:.0f} ms", miss.process, 1e3 * miss.late_s);
   if (miss.zero_s > 0.0) text += fmt::format(", force 0 for {:.2f} s", miss.zero_s);
-  if (miss.force_before_n > 0.0 && std::isnan(miss.back_s)) text += ", not whole again";
+  if (miss.force_before_n > 0.0 && std::isnan(miss.back_s))
+    text += ", force not whole again in this trial";
   if (miss.zero_s > 0.0 && miss.back_s > 0.0) {
     text += fmt::format(", whole again after {:.1f} s", miss.back_s);
   }

@@ -33,7 +33,7 @@ std::vector<fs::path> session_folders(const fs::path& folder) {
   if (!fs::is_directory(folder / "participants")) return {folder};
   // The tables name the conditions (apps/experiment/README.md, "The folder").
   if (fs::exists(folder / "experiment.yaml") && !fs::exists(folder / "assignment.json")) {
-    throw ConfigError("--sessions", folder.string() + ", an experiment that is still blinded",
+    throw ConfigError(folder.string(), "an experiment that is still blinded",
                       "`stillhand experiment unblind " + folder.string() + "` first");
   }
   std::vector<fs::path> out;
@@ -41,7 +41,7 @@ std::vector<fs::path> session_folders(const fs::path& folder) {
     std::ranges::copy(folders_in(participant / "sessions"), std::back_inserter(out));
   }
   if (out.empty()) {
-    throw ConfigError("--sessions", folder.string() + ", an experiment without a session",
+    throw ConfigError(folder.string(), "an experiment without a session",
                       "participants/*/sessions/*/" + std::string(kFileName));
   }
   return out;
@@ -63,7 +63,7 @@ std::string text_of(const recording::Metadata& metadata, const std::string& key)
 SessionFile session_file(const fs::path& folder) {
   SessionFile out{folder / kFileName, name_of(folder), "1", "", ""};
   if (!fs::is_regular_file(out.path)) {
-    throw ConfigError("--sessions", folder.string() + ", a folder without " + kFileName,
+    throw ConfigError(folder.string(), std::string("a folder without ") + kFileName,
                       "the folder of a session, or of an experiment");
   }
   recording::FileSource file(out.path.string());

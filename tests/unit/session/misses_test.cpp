@@ -133,7 +133,8 @@ TEST(MissesTest, AForceThatDoesNotComeBackIsSaid) {
   const auto sut = misses_in(recording);
   ASSERT_THAT(sut, SizeIs(1));
   EXPECT_TRUE(std::isnan(sut.front().back_s));
-  EXPECT_THAT(what_happened(sut.front()), testing::HasSubstr("not whole again"));
+  EXPECT_THAT(what_happened(sut.front()),
+              testing::HasSubstr("force not whole again in this trial"));
 }
 
 TEST(MissesTest, OtherClocksAreConverted) {
