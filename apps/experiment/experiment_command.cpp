@@ -172,7 +172,7 @@ void add_run(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
   sub->add_option("--config", lab.config, "folder with the settings of each service")
       ->capture_default_str();
   sub->add_option("--match-seconds", lab.match_s,
-                  "longest wait until every endpoint has matched [s]")
+                  "longest wait until all processes have found each other [s]")
       ->capture_default_str();
   sub->add_option("--gamepad", lab.gamepad,
                   "input device, for example /dev/input/event5, if the operator is gamepad")
@@ -192,8 +192,9 @@ void add_run(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
 void add_rest(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
   CLI::App* shown = subcommand(verb, "status", "Shows how far each participant is.", *typed);
   shown->callback([typed, &status] { status = show_status(*typed); });
-  CLI::App* excluded = subcommand(
-      verb, "exclude", "Notes that a participant's data do not count. Deletes nothing.", *typed);
+  CLI::App* excluded =
+      subcommand(verb, "exclude",
+                 "Marks a participant as excluded, with the reason. Deletes nothing.", *typed);
   excluded->add_option("--participant", typed->participant, "code such as P07")->required();
   excluded->add_option("--reason", typed->reason, "why")->required()->check(settings::check_name);
   excluded->callback([typed] { exclude(*typed); });

@@ -213,7 +213,7 @@ void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments
                      "`stillhand calibrate` first); or another file like devices.yaml [simulated]. "
                      "A number is the rig's number on the bus [1]. Both may be given"));
   lab.add_option("--match-seconds", options.match_s,
-                 "longest wait until every endpoint has matched [s]")
+                 "longest wait until all processes have found each other [s]")
       ->capture_default_str();
   lab.add_option("--profiles", options.profiles, "file with the QoS profiles")
       ->capture_default_str();
@@ -279,7 +279,7 @@ void add_lab_command(CLI::App& cli, int& status) {
   CLI::App* lab = cli.add_subcommand(
       "lab",
       "Runs a whole session, on this machine or on the machines of an inventory. The verb starts\n"
-      "every process and identifies the feedthrough with the stick pegged. Then it runs one\n"
+      "every process and identifies the feedthrough with the stick fixed. Then it runs one\n"
       "tracking trial for each condition, in blinded and shuffled order. It records everything "
       "and\n"
       "computes the results from the recording.\n"

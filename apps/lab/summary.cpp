@@ -49,8 +49,7 @@ void print_table(const session::SessionResult& result) {
                 metric.paper_restored_percent);
   }
   std::printf(
-      "The paper's RMS error has no unit and stands at 5.5 mm a unit. One trial of each condition "
-      "has "
+      "The paper's RMS error has no unit: one is taken for 5.5 mm. One trial of each condition has "
       "no interval;\n`stillhand close-the-loop --repeats` measures it.\n");
 }
 
@@ -119,9 +118,9 @@ void print_models(const session::SessionResult& result,
   }
   if (result.conversion) {
     std::printf(
-        "left of the pegged feedthrough force: %.1f %% by the filter at 1 kHz, %.1f %% by the 50 "
-        "Hz "
-        "model if its output were held for 20 ms\n",
+        "with the stick fixed, the model at 1 kHz leaves %.1f %% of the feedthrough force; at 50 "
+        "Hz, "
+        "held for 20 ms, %.1f %%\n",
         100.0 * result.conversion->control_filter, 100.0 * result.conversion->zero_order_hold);
   }
 }

@@ -33,7 +33,7 @@ struct Practice {
   static void fields(Visitor&& visit, Self& self) {
     visit("trial_s", self.trial_s, Range{5.0, 3600.0}, "[s] measured length of a practice trial");
     visit("most_trials", self.most_trials, Range{0.0, 50.0},
-          "[-] practice trials (platform stands) without the criterion; 0: no practice");
+          "[-] most practice trials, if the criterion is not met; the platform stands; 0: none");
     visit("dwell_ratio", self.dwell_ratio, Range{0.0, 1.0},
           "[-] criterion: a practice trial with this dwell ratio or more");
     visit("in_a_row", self.in_a_row, Range{1.0, 10.0}, "[-] such trials in a row");
@@ -52,7 +52,7 @@ struct Exclusion {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("least_completed_share", self.least_completed_share, Range{0.0, 1.0},
-          "[-] completed share of the planned trials; fewer exclude the participant");
+          "[-] share of the planned trials; who completed less is excluded");
     visit("most_lost_tick_share", self.most_lost_tick_share, Range{0.0, 1.0},
           "[-] lost share of a trial's ticks; more exclude the trial");
     visit("least_dwell_ratio_a", self.least_dwell_ratio_a, Range{0.0, 1.0},
@@ -121,8 +121,9 @@ struct Design {
           "[s] pegged trial at the begin of each session; paper III-A (120)");
     visit("rest_s", self.rest_s, Range{0.0, 3600.0}, "[s] shortest rest before a trial");
     visit("break_s", self.break_s, Range{0.0, 36000.0}, "[s] break between two blocks");
-    visit("motion_seed", self.motion_seed, Range{0.0, 4294967295.0}, "[-] of the platform motion");
-    visit("target_seed", self.target_seed, Range{0.0, 4294967295.0}, "[-] of the target");
+    visit("motion_seed", self.motion_seed, Range{0.0, 4294967295.0},
+          "[-] seed of the platform motion");
+    visit("target_seed", self.target_seed, Range{0.0, 4294967295.0}, "[-] seed of the target");
     visit("same_motion_for_all", self.same_motion_for_all, Range{0.0, 1.0},
           "[-] participants share the motion of each trial; false: each has its own");
     visit("same_target_for_all", self.same_target_for_all, Range{0.0, 1.0},
