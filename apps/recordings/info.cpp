@@ -115,6 +115,7 @@ RecordingInfo info_of(OpenRecording& recording) {
   info.metadata = reader.metadata();
   info.damage = reader.damage();
   info.lost_bytes = reader.lost_bytes();
+  info.clock_steps = reader.clock_steps();
   return info;
 }
 

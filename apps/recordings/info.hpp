@@ -43,6 +43,7 @@ struct RecordingInfo {
   std::vector<TopicInfo> topics;
   std::vector<recording::Metadata> metadata;
   std::vector<recording::Damage> damage;
+  std::vector<recording::ClockStep> clock_steps;  ///< which no time above has
   std::uint64_t lost_bytes = 0;
 };
 

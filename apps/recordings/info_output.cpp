@@ -137,7 +137,8 @@ std::string info_json(const RecordingInfo& info) {
                    {"topics", ordered_json::array()},
                    {"metadata", ordered_json::array()},
                    {"lost_bytes", info.lost_bytes},
-                   {"damage", ordered_json::array()}};
+                   {"damage", ordered_json::array()},
+                   {"clock_steps", ordered_json::array()}};
   for (const TopicInfo& topic : info.topics) out["topics"].push_back(topic_json(topic));
   for (const recording::Metadata& metadata : info.metadata) {
     out["metadata"].push_back({{"name", metadata.name}, {"texts", metadata.texts}});
@@ -145,6 +146,9 @@ std::string info_json(const RecordingInfo& info) {
   for (const recording::Damage& damage : info.damage) {
     out["damage"].push_back(
         {{"offset", damage.offset}, {"lost_bytes", damage.lost_bytes}, {"text", damage.text}});
+  }
+  for (const recording::ClockStep& step : info.clock_steps) {
+    out["clock_steps"].push_back({{"at_ns", step.at_ns}, {"by_ns", step.by_ns}});
   }
   // A damaged or foreign text need not be UTF-8.
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

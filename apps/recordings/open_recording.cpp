@@ -33,6 +33,8 @@ OpenRecording::OpenRecording(const std::string& file, Stopped stopped)
 void OpenRecording::report_loss(std::uint64_t messages) const {
   const std::string line = recording::loss_line(path, reader, messages, source.being_written());
   if (!line.empty()) runtime::remark(line);
+  const std::string clock = recording::clock_line(path, reader);
+  if (!clock.empty()) runtime::remark(clock);
 }
 
 void check(const recording::Status& status) {

@@ -38,7 +38,8 @@ struct OpenRecording {
   ///         now or while it is read.
   explicit OpenRecording(const std::string& file, Stopped stopped = {});
 
-  /// Prints on standard error, in one line, what is lost; nothing if nothing is lost.
+  /// Prints on standard error, in a line each, what is lost and how its clock was set; nothing if
+  /// nothing is.
   /// @param messages  [-] that were delivered
   void report_loss(std::uint64_t messages) const;
 

@@ -79,6 +79,7 @@ int run_verify(const std::string& path) {
   const bool being_written = recording.source.being_written();
   if (damage.empty() && !being_written) {
     fmt::print("{}: whole; {} messages, every checksum is right\n", path, messages);
+    recording.report_loss(messages);
     return 0;
   }
   std::fputs(damage_text(damage).c_str(), stdout);

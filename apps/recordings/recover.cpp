@@ -13,6 +13,7 @@
 
 #include "apps/recordings/pending_file.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/core/recording/mcap/mcap_loss.hpp"
 #include "services/core/recording/mcap/mcap_writer.hpp"
 #include "version.hpp"
 
@@ -99,8 +100,9 @@ void keep_as(const std::string& path, const std::string& kept) {
   fs::copy_file(path, kept);
 }
 
-std::vector<std::string> findings_of(const recording::McapReader& reader) {
+std::vector<std::string> findings_of(const std::string& path, const recording::McapReader& reader) {
   std::vector<std::string> findings;
+  if (!reader.clock_steps().empty()) findings.push_back(recording::clock_line(path, reader));
   for (const recording::Damage& damage : reader.damage()) {
     findings.push_back(fmt::format(
         "byte {}: {}{}", damage.offset, damage.text,
@@ -122,7 +124,8 @@ Recovered recover(const std::string& path, const RecoverOptions& options) {
   OpenRecording old(path, options.stopped);
   refuse_what_cannot_be_mended(old);
   Recovered result;
-  result.was_whole = old.reader.verify().ok() && old.reader.damage().empty();
+  result.was_whole =
+      old.reader.verify().ok() && old.reader.damage().empty() && old.reader.clock_steps().empty();
   check(old.reader.status());
   if (result.was_whole) {
     result.messages = old.reader.statistics().message_count;
@@ -147,7 +150,7 @@ Recovered recover(const std::string& path, const RecoverOptions& options) {
   }
   result.lost_bytes = old.reader.lost_bytes();
   result.attachments = old.reader.statistics().attachment_count;
-  result.findings = findings_of(old.reader);
+  result.findings = findings_of(path, old.reader);
   copy.close(summary_of(result, path));
   refuse_what_cannot_be_mended(old);  // it may have begun to grow again
   go_on_unless(options.stopped);

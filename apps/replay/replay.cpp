@@ -262,6 +262,8 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
   const std::string loss =
       recording::loss_line(options.file, damage, std::nullopt, file.being_written());
   if (!loss.empty()) runtime::remark(loss);
+  const std::string clock = recording::clock_line(options.file, reader);
+  if (!clock.empty()) runtime::remark(clock);
   if (!obstacle.empty()) runtime::remark("stopped: a second writer of " + obstacle);
   if (refused > 0) runtime::remark(fmt::format("Fast DDS refused {} messages", refused));
   return recording::lost_bytes(damage) == 0 && refused == 0 && obstacle.empty() ? 0 : 1;

@@ -50,4 +50,17 @@ std::string loss_line(const std::string& path, const std::vector<Damage>& damage
          "; `stillhand verify` lists all";
 }
 
+std::string clock_line(const std::string& path, const McapReader& reader) {
+  if (reader.clock_steps().empty()) return {};
+  std::string line = path + ": the clock of its recorder was set by ";
+  for (const ClockStep& step : reader.clock_steps()) {
+    const auto after_ns = static_cast<std::int64_t>(step.at_ns - reader.statistics().start_time_ns);
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%+.3f s at %.3f s, ",
+                  1e-9 * static_cast<double>(step.by_ns), 1e-9 * static_cast<double>(after_ns));
+    line += text.data();
+  }
+  return line + "its times are read as if it had not been; `stillhand recover` writes them so";
+}
+
 }  // namespace stillhand::recording

@@ -23,6 +23,9 @@ inline std::string loss_line(const std::string& path, const McapReader& reader,
   return loss_line(path, reader.damage(), messages, being_written);
 }
 
+/// One line for a person that states the steps of a recorder's clock; empty: there are none.
+std::string clock_line(const std::string& path, const McapReader& reader);
+
 /// "12 bytes", "3.4 kB", "5.6 MB"
 std::string byte_count(std::uint64_t bytes);
 

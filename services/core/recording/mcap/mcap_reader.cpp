@@ -21,6 +21,7 @@ McapReader::McapReader(ByteSource& source, McapReaderOptions options)
     scan();
   }
   if (status_.ok()) status_ = window_.status();
+  if (status_.ok()) straighten_clock();
   if (!status_.ok()) {
     forget();
   } else if (pieces_.empty() && !damage_.empty() && damage_.front().kind == DamageKind::kNoMagic) {

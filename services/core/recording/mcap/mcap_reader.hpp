@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "services/core/recording/mcap/byte_stream.hpp"
+#include "services/core/recording/mcap/clock_steps.hpp"
 #include "services/core/recording/mcap/mcap_damage.hpp"
 #include "services/core/recording/mcap/mcap_format.hpp"
 #include "services/core/recording/source_window.hpp"
@@ -26,7 +27,7 @@ struct MessageView {
   const Channel& channel;
   const Schema* schema;  ///< nullptr if the channel has none or it is lost
   std::uint32_t sequence;
-  std::uint64_t log_time_ns;
+  std::uint64_t log_time_ns;  ///< straight: without the steps of clock_steps()
   std::uint64_t publish_time_ns;
   std::span<const std::byte> bytes;
 };
@@ -42,7 +43,8 @@ struct MessageFilter {
 /// With a valid footer, the reader uses the summary.  Otherwise it scans the file from its start
 /// and recovers every complete chunk with the right checksum (FORMAT.md, "Recovery").  It repairs
 /// nothing by guessing; damage() lists everything that it drops.  It never allocates more than the
-/// options allow, whatever a length field states.
+/// options allow, whatever a length field states.  Of a recording of Stillhand whose clock somebody
+/// set, it gives the log times as if nobody had (FORMAT.md, "A clock that was set").
 /// The source must outlive the reader.  Thread-compatible.  Throws only std::bad_alloc and the
 /// exceptions of source and callback; after such an exception the reader must not be used.
 class McapReader {
@@ -62,6 +64,8 @@ class McapReader {
   [[nodiscard]] const std::set<Compression>& compressions() const noexcept { return compressions_; }
   /// From the summary, or counted by the scan.
   [[nodiscard]] const Statistics& statistics() const noexcept { return statistics_; }
+  /// Steps of the recorder's clock, which are taken out of all log times and of statistics().
+  [[nodiscard]] const std::vector<ClockStep>& clock_steps() const noexcept { return clock_steps_; }
   /// First metadata record of that name, or nullptr.
   [[nodiscard]] const Metadata* find_metadata(std::string_view name) const noexcept;
 
@@ -122,11 +126,18 @@ class McapReader {
   // mcap_walk.cpp: from messages to the caller
   void count_messages();
   void walk(Pass& pass);
+  void walk_piece(const Piece& piece, Pass& pass);
   void walk_chunk(const Piece& piece, Pass& pass);
   std::optional<std::span<const std::byte>> unpack_chunk(const Piece& piece);
   void walk_loose(const Piece& piece, Pass& pass);
   void walk_record(Opcode opcode, std::span<const std::byte> content, std::uint64_t offset,
                    Pass& pass);
+
+  // mcap_clock.cpp: log times as if nobody had set the recorder's clock
+  void straighten_clock();
+  bool clock_may_have_stepped() const;
+  std::optional<std::int64_t> clock_set_by_ns() const;
+  std::uint64_t straight_time_ns(std::uint64_t log_time_ns, std::uint64_t offset, Pass& pass) const;
 
   ByteSource& source_;
   McapReaderOptions options_;
@@ -142,6 +153,7 @@ class McapReader {
   std::set<Compression> compressions_;
   std::vector<Piece> pieces_;
   std::vector<Damage> damage_;
+  std::vector<ClockStep> clock_steps_;
   std::optional<std::uint64_t> data_end_;  // offset of the Data End record
   std::vector<std::byte> packed_;
   std::vector<std::byte> unpacked_;

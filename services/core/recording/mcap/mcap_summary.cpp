@@ -40,8 +40,9 @@ bool McapReader::open_by_summary() {
     trouble = "the summary is larger than the reader may load";
   } else {
     const auto loaded = window_.view(start, checked_end - start);
-    const std::vector<std::byte> summary(loaded.begin(), loaded.end());
-    if (summary.empty()) return false;  // the source failed
+    if (loaded.empty()) return false;  // the source failed
+    std::vector<std::byte> summary(loaded.size());
+    std::ranges::copy(loaded, summary.begin());
     const auto records = std::span(summary).first(static_cast<std::size_t>(footer_start - start));
     if (footer->summary_crc != 0 && crc32(summary) != footer->summary_crc) {
       trouble = "the checksum of the summary differs";

@@ -3,41 +3,10 @@
 
 #include "services/core/recording/mcap/compression.hpp"
 #include "services/core/recording/mcap/crc32.hpp"
-#include "services/core/recording/mcap/mcap_reader.hpp"
+#include "services/core/recording/mcap/mcap_pass.hpp"
 #include "services/core/recording/mcap/mcap_records.hpp"
 
 namespace stillhand::recording {
-
-// A walk over all pieces.  Each pass looks up a channel once, by number.
-struct McapReader::Pass {
-  struct Topic {
-    const Channel* channel = nullptr;
-    const Schema* schema = nullptr;
-    bool wanted = false;
-  };
-  const MessageFilter& filter;
-  const std::function<bool(const MessageView&)>& take;
-  std::vector<Topic> topics = {};
-  bool stopped = false;
-  std::uint64_t unknown_bytes = 0;  // messages without a channel in this piece
-
-  const Topic& topic(const McapReader& reader, ChannelId id) {
-    if (id >= topics.size()) topics.resize(std::size_t{id} + 1);
-    Topic& topic = topics[id];
-    if (topic.channel == nullptr) {
-      const auto channel = reader.channels_.find(id);
-      if (channel != reader.channels_.end()) {
-        topic.channel = &channel->second;
-        const auto schema = reader.schemas_.find(topic.channel->schema_id);
-        topic.schema = schema == reader.schemas_.end() ? nullptr : &schema->second;
-        topic.wanted =
-            filter.topics.empty() ||
-            std::ranges::find(filter.topics, topic.channel->topic) != filter.topics.end();
-      }
-    }
-    return topic;
-  }
-};
 
 // Counts the statistics without a summary, and reads every definition.
 void McapReader::count_messages() {
@@ -75,12 +44,18 @@ void McapReader::walk(Pass& pass) {
         piece.end_time_ns < pass.filter.start_time_ns) {
       continue;
     }
-    pass.unknown_bytes = 0;
-    piece.is_chunk ? walk_chunk(piece, pass) : walk_loose(piece, pass);
-    if (pass.unknown_bytes > 0) {
-      add_damage(DamageKind::kUnknownChannel, piece.offset, pass.unknown_bytes,
-                 "messages of an undefined channel");
-    }
+    walk_piece(piece, pass);
+  }
+}
+
+void McapReader::walk_piece(const Piece& piece, Pass& pass) {
+  pass.unknown_bytes = 0;
+  pass.message = 0;
+  pass.newest_ns.reset();
+  piece.is_chunk ? walk_chunk(piece, pass) : walk_loose(piece, pass);
+  if (pass.unknown_bytes > 0) {
+    add_damage(DamageKind::kUnknownChannel, piece.offset, pass.unknown_bytes,
+               "messages of an undefined channel");
   }
 }
 
@@ -171,7 +146,7 @@ void McapReader::walk_record(Opcode opcode, std::span<const std::byte> content,
   WireReader in(content);
   const auto id = in.take<std::uint16_t>();
   const auto sequence = in.take<std::uint32_t>();
-  const auto log_time_ns = in.take<std::uint64_t>();
+  auto log_time_ns = in.take<std::uint64_t>();
   const auto publish_time_ns = in.take<std::uint64_t>();
   if (!in.ok()) {
     add_damage(DamageKind::kBadRecord, offset, content.size(), "message record too short");
@@ -182,6 +157,12 @@ void McapReader::walk_record(Opcode opcode, std::span<const std::byte> content,
     pass.unknown_bytes += kRecordHeadBytes + content.size();
     return;
   }
+  if (pass.finder != nullptr) {
+    pass.finder->take(offset, pass.message, id, topic.stream, log_time_ns,
+                      content.subspan(kMessageHeadBytes));
+  }
+  if (!clock_steps_.empty()) log_time_ns = straight_time_ns(log_time_ns, offset, pass);
+  ++pass.message;
   if (!topic.wanted || log_time_ns < pass.filter.start_time_ns ||
       log_time_ns > pass.filter.end_time_ns) {
     return;
