@@ -118,6 +118,9 @@ class Run {
     tap.wanted = [this](const std::string& topic) { return wants(topic); };
     tap.on_sample = [this](const runtime::FoundWriter& writer,
                            const runtime::TappedSample& sample) { take(writer, sample); };
+    tap.on_instance_end = [this](std::size_t writer, std::int64_t sequence) {
+      recorded_->end_instance(writer, sequence);
+    };
     return tap;
   }
 

@@ -107,16 +107,21 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
   void on_data_available(edds::DataReader* source) override {
     edds::SampleInfo info;
     while (ok(source->take_next_sample(&sample, &info))) {
-      if (!info.valid_data) continue;
       const SampleWriters::Entry* entry = writer_of.of(info.publication_handle);
-      if (entry == nullptr) owner.unattributed.fetch_add(1, std::memory_order_relaxed);
+      const auto sequence =
+          static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long());
+      if (entry == nullptr && info.valid_data) {
+        owner.unattributed.fetch_add(1, std::memory_order_relaxed);
+      }
       if (entry == nullptr || class_of(entry->writer.qos) != key.second) continue;
+      if (!info.valid_data) {
+        if (owner.options.on_instance_end) owner.options.on_instance_end(entry->number, sequence);
+        continue;
+      }
       const std::int64_t received_ns = monotonic_ns();
-      owner.options.on_sample(
-          entry->writer,
-          {entry->number,
-           static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long()),
-           info.source_timestamp.to_ns(), log_ns(received_ns), received_ns, sample});
+      owner.options.on_sample(entry->writer,
+                              {entry->number, sequence, info.source_timestamp.to_ns(),
+                               log_ns(received_ns), received_ns, sample});
     }
   }
 

@@ -32,6 +32,9 @@ class Tap {
     bool batched = false;
     std::function<bool(const std::string& topic)> wanted;
     std::function<void(const FoundWriter&, const TappedSample&)> on_sample;
+    /// Optional: an instance of a writer was disposed of or given up, which takes a number of its
+    /// samples' sequence.
+    std::function<void(std::size_t writer, std::int64_t sequence)> on_instance_end = {};
     bool any_type = false;  ///< also topics outside the catalogue whose type idl/ does not define
     /// Optional: definition of a type that discovery does not describe, or "".
     std::function<std::string(const std::string& type)> idl_of = {};

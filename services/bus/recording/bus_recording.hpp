@@ -17,6 +17,9 @@ class BusRecording {
   explicit BusRecording(TapeOptions options);
 
   void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
+  void end_instance(std::size_t writer, std::int64_t sequence) {
+    tally_.end_instance(writer, sequence);
+  }
 
   [[nodiscard]] Tape& tape() noexcept { return tape_; }
   [[nodiscard]] const Tape& tape() const noexcept { return tape_; }

@@ -60,6 +60,12 @@ void Tally::take(const FoundWriter& writer, const TappedSample& sample) {
              sample.source_ns, sample.received_ns, sample.bytes);
 }
 
+void Tally::end_instance(std::size_t writer, std::int64_t sequence) {
+  const std::lock_guard lock(mutex_);
+  const auto known = sources_.find(writer);
+  if (known != sources_.end()) known->second.count.end_instance(sequence);
+}
+
 std::map<std::string, TopicTally> Tally::topics(const std::vector<FoundWriter>& found) const {
   const std::vector<std::uint64_t> written = tape_->written_by_channel();
   std::map<std::string, TopicTally> all;

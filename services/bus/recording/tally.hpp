@@ -31,6 +31,9 @@ class Tally {
 
   void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
 
+  /// A sequence number without a sample, of a writer that ended an instance.
+  void end_instance(std::size_t writer, std::int64_t sequence);
+
   /// Counts by topic; a wanted writer that sent nothing has zeros.
   [[nodiscard]] std::map<std::string, TopicTally> topics(
       const std::vector<runtime::FoundWriter>& found) const;

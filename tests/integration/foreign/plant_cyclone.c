@@ -62,6 +62,9 @@ int main(int argc, char** argv) {
     const plant_Growing grown = {.count = (uint32_t)i, .note = note};
     good(dds_write(states, &state), "write");
     good(dds_write(growing, &grown), "write");
+    // Ends of instances take numbers of the sequence, and are no samples.
+    if (i % 20 == 10) good(dds_dispose(states, &state), "dispose");
+    if (i % 20 == 15) good(dds_unregister_instance(states, &state), "unregister");
   }
   good(dds_wait_for_acks(states, DDS_SECS(10)), "acknowledgements");
   good(dds_wait_for_acks(growing, DDS_SECS(10)), "acknowledgements");

@@ -112,6 +112,11 @@ int main(int argc, char** argv) {
         !runtime::ok(imus->write(&imu))) {
       return 1;
     }
+    // Ends of instances take numbers of the sequence, and are no samples.
+    if (i % 20 == 10 && !runtime::ok(states->dispose(&state, edds::HANDLE_NIL))) return 1;
+    if (i % 20 == 15 && !runtime::ok(states->unregister_instance(&state, edds::HANDLE_NIL))) {
+      return 1;
+    }
   }
   for (edds::DataWriter* each : {states, flats, imus}) {
     if (!runtime::ok(each->wait_for_acknowledgments({10, 0}))) return 1;

@@ -29,6 +29,19 @@ TEST(LossCountTest, ASampleMissingByBothCountsOnce) {
   EXPECT_EQ(sut.not_sent(), 0);
 }
 
+TEST(LossCountTest, TheEndOfAnInstanceIsNoLossAndHidesNone) {
+  LossCount sut;
+  sut.step(1, -1);
+  sut.end_instance(2);
+  sut.end_instance(3);
+  sut.step(4, -1);
+  EXPECT_EQ(sut.received(), 2);
+  EXPECT_EQ(sut.lost(), 0);
+  sut.end_instance(7);
+  sut.step(8, -1);
+  EXPECT_EQ(sut.lost(), 2);
+}
+
 TEST(LossCountTest, ATickThatNeverReachedTheWritersDdsIsLostTooAndToldApart) {
   LossCount sut;
   sut.step(1, 10);
