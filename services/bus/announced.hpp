@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <fastdds/dds/publisher/qos/WriterQos.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,17 @@ struct AnnouncedWriter {
   bool here = true;
   std::string idl = {};  ///< definition of the type, if discovery describes it
 };
+
+/// Whether the description of a stranger's type is read: 64 KiB at most, and 256 types that it
+/// depends on.
+/// @param object_bytes  [B] of its own object, then of those that it depends on
+inline bool is_bounded(std::span<const std::uint32_t> object_bytes) noexcept {
+  constexpr std::uint64_t kMostBytes = 64 * 1024;
+  constexpr std::size_t kMostTypes = 1 + 256;
+  if (object_bytes.size() > kMostTypes) return false;
+  std::uint64_t bytes = 0;
+  for (const std::uint32_t each : object_bytes) bytes += each;
+  return bytes <= kMostBytes;
+}
 
 }  // namespace stillhand::runtime

@@ -21,6 +21,7 @@ SESSION_READER = BUILD / "tests" / "session_reader"
 MOTION = STILLHAND.with_name("stillhand-motion")
 COMPARE = BUILD / "tests" / "compare_messages"
 COUNT = 60
+MOST_TOPICS = 1000
 PATTERNS = ["--topics", "plant/*", "--topics", "rt/*"]
 needs_cyclone = unittest.skipUnless(CYCLONE.is_file(),
                                     "built without Cyclone DDS (packages cyclonedds-dev and cyclonedds-tools)")
@@ -111,6 +112,15 @@ class ForeignBusTest(Bus):
         state = self.rows(file, "plant/state")
         self.assertEqual([int(row["tick [-]"]) for row in state], list(range(COUNT)))
         self.assertEqual([float(row["gains.1 [?]"]) for row in state], [-float(i) for i in range(COUNT)])
+
+    def test_of_a_crowd_of_topics_a_thousand_are_recorded_and_the_rest_is_said(self):
+        file = self.folder / "crowd.mcap"
+        recorder = self.start(STILLHAND, "record", "--out", file, "--domain", self.domain, "--no-real-time", *PATTERNS)
+        writer = self.start(FAST_DDS, self.domain, "crowd", MOST_TOPICS)
+        self.wait_for("everything acknowledged", writer, lambda: f"written {MOST_TOPICS}" in writer.said())
+        self.assertEqual(recorder.end(signal.SIGINT), 1)
+        self.assertIn("of so many topics some are not received", recorder.said())
+        self.assertEqual([topic["messages"] for topic in self.info(file)["topics"]], [1] * MOST_TOPICS)
 
     @needs_cyclone
     def test_a_cyclone_program_is_recorded_and_replayed_bit_for_bit(self):

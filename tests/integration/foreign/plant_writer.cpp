@@ -3,12 +3,16 @@
 // plant.idl, which it describes in discovery; one topic is as ROS 2 writes it, with a hash of its
 // type and no description.  Waits for a reader of each topic, writes, prints "written 60" once they
 // have everything, and stays until SIGTERM.  Used by foreign_bus_test.py.
+// plant_writer DOMAIN crowd READ: writers of 5 topics more than READ, plant/0 and so on.  Once READ
+// of them have a reader, each writes a sample; "written READ" follows.
+#include <algorithm>
 #include <cstdio>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <string>
+#include <vector>
 
 #include "places.hpp"
 #include "services/bus/participant.hpp"
@@ -80,13 +84,39 @@ plant::State state_at(int i) {
   return state;
 }
 
+int write_in_a_crowd(Program& program, std::size_t read, runtime::Stop& stop) {
+  std::vector<edds::DataWriter*> writers;
+  for (std::size_t i = 0; i < read + 5; ++i) {
+    writers.push_back(program.writer("plant/" + std::to_string(i),
+                                     runtime::carrier_of("plant::Unknown", false), false));
+    if (writers.back() == nullptr) return 1;
+  }
+  while (!stop.requested() &&
+         static_cast<std::size_t>(std::ranges::count_if(writers, has_reader)) < read) {
+    support::eventually([&] { return stop.requested(); }, std::chrono::milliseconds(100));
+  }
+  runtime::SerializedSample sample{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  sample.resize(12);
+  for (edds::DataWriter* each : writers) {
+    if (!runtime::ok(each->write(&sample))) return 1;
+  }
+  for (edds::DataWriter* each : writers) {
+    if (!runtime::ok(each->wait_for_acknowledgments({10, 0}))) return 1;
+  }
+  std::printf("written %zu\n", read);
+  std::fflush(stdout);
+  stop.wait();
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
+  if (argc != 2 && argc != 4) return 2;
   runtime::Stop stop;
   describe();
   Program program(static_cast<std::uint32_t>(std::stoul(argv[1])));
+  if (argc == 4) return write_in_a_crowd(program, std::stoul(argv[3]), stop);
   edds::DataWriter* states =
       program.writer("plant/state", edds::TypeSupport(new plant::StatePubSubType()), false);
   edds::DataWriter* flats =

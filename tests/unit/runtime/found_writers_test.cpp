@@ -91,6 +91,14 @@ TEST(FoundWritersTest, DefinitionsWithoutAnEndFillNoMemory) {
   }
 }
 
+TEST(AnnouncedTest, ADescriptionIsReadUpToItsBounds) {
+  EXPECT_TRUE(is_bounded(std::vector<std::uint32_t>{64 * 1024}));
+  EXPECT_FALSE(is_bounded(std::vector<std::uint32_t>{64 * 1024, 1}));
+  EXPECT_FALSE(is_bounded(std::vector<std::uint32_t>(3, UINT32_MAX)));
+  EXPECT_TRUE(is_bounded(std::vector<std::uint32_t>(1 + 256, 100)));
+  EXPECT_FALSE(is_bounded(std::vector<std::uint32_t>(1 + 257, 100)));
+}
+
 // Each comes with a writer of its own, and leaves.
 TEST(FoundWritersTest, StrangersThatComeAndGoFillNoMemoryAndTakeNobodysPlace) {
   FoundWriters sut;

@@ -12,6 +12,7 @@
 #include <fastdds/dds/xtypes/utils.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "services/bus/announced.hpp"
 
@@ -49,13 +50,14 @@ inline std::string in_modules(const std::string& text) {
 /// Text of a type that discovery describes, or "".  Fast DDS has fetched the objects of its peers'
 /// types before it announces an endpoint; what another vendor describes it passes over.
 inline std::string idl_of(const edds::xtypes::TypeInformationParameter& announced) {
-  constexpr std::uint64_t kMostBytes = 64 * 1024;  // of all objects together
-  constexpr std::size_t kMostTypes = 256;
   if (!announced.assigned()) return "";
   const auto& described = announced.type_information.complete();
-  std::uint64_t bytes = described.typeid_with_size().typeobject_serialized_size();
-  for (const auto& each : described.dependent_typeids()) bytes += each.typeobject_serialized_size();
-  if (described.dependent_typeids().size() > kMostTypes || bytes > kMostBytes) return "";
+  std::vector<std::uint32_t> object_bytes{
+      described.typeid_with_size().typeobject_serialized_size()};
+  for (const auto& each : described.dependent_typeids()) {
+    object_bytes.push_back(each.typeobject_serialized_size());
+  }
+  if (!is_bounded(object_bytes)) return "";
   edds::xtypes::TypeObject object;
   auto& registry = edds::DomainParticipantFactory::get_instance()->type_object_registry();
   if (!ok(registry.get_type_object(described.typeid_with_size().type_id(), object))) return "";
