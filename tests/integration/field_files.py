@@ -677,22 +677,105 @@ hdf5("B10", "three dimensions", Refused(("3 dimensions",)), {"cube": (numpy.zero
 
 # B11. Files of other kinds
 
-for name, begin, words in (("ride.db3", b"SQLite format 3\0", "ros2 bag convert"),
+for name, begin, words in (("ride.db3", b"SQLite format 3\0", "rosbags-convert"),
                            ("ride.mcap.zst", b"\x28\xb5\x2f\xfd", "zstd -d"),
                            ("ride.csv.gz", b"\x1f\x8b\x08", "gunzip"), ("ride.csv.bz2", b"BZh91AY&SY", "bunzip2"),
                            ("ride.7z", b"7z\xbc\xaf\x27\x1c", "7z"), ("ride.xlsx", b"PK\x03\x04", "csv"),
                            ("ride.xls", b"\xd0\xcf\x11\xe0", "csv"), ("ride.tdms", b"TDSm", "nptdms"), ("ride.mf4",
                                                                    b"MDF     ", "asammdf"),
-                           ("ride.xdf", b"XDF:", "pyxdf"), ("ride.c3d", b"\x02\x50", "ezc3d"), ("ride.parquet", b"PAR1",
+                           ("ride.c3d", b"\x02\x50", "ezc3d"), ("ride.parquet", b"PAR1",
                                                                    "pandas"),
-                           ("ride.bag", b"#ROSBAG V2.0\n", "mcap convert"), ("ride.npy", b"\x93NUMPY", "numpy"),
-                           ("ride.npz", b"PK\x03\x04", "numpy"), ("ride.edf", b"0       X X", "edf"), ("ride.feather",
+                           ("ride.bag", b"#ROSBAG V2.0\n", "rosbags-convert"), ("ride.npy", b"\x93NUMPY", "numpy"),
+                           ("ride.npz", b"PK\x03\x04" + bytes(26) + b"t.npy", "numpy.column_stack"), ("ride.edf", b"0       X X", "edf"), ("ride.feather",
                                                                    b"ARROW1", "pandas"),
                            ("pandas.pkl", b"\x80\x05\x95", "pandas"), ("ride.pkl", b"\x80\x04\x95", "pandas"), ("ride.blf", b"LOGG", "can")):
     def other(folder, name=name, begin=begin):
         (folder / name).write_bytes(begin + bytes(range(256)) * 20)
         return folder / name, []
     MEMBERS.append(Member("B11", name, other, Refused((words,))))
+
+
+# XDF: streams of LabRecorder, each with the clock of its sender
+
+XDF_MAP = ["--map", "platform.y=a_y", "stick.force=f"]
+RECORDER_S = 50000.0  # [s] its clock when the recording began
+
+
+def chunk(tag, content):
+    return b"\x04" + struct.pack("<IH", 2 + len(content), tag) + content
+
+
+def xdf_header(number, name, channels, form="double64", rate_hz=RATE_HZ):
+    listed = "".join(f"<channel><label>{label}</label><unit>{unit}</unit></channel>" for label, unit in channels)
+    return chunk(2, struct.pack("<I", number) + (
+        f"<?xml version=\"1.0\"?><info><name>{name}</name><channel_count>{len(channels)}</channel_count><nominal_srate>"
+        f"{rate_hz}</nominal_srate><channel_format>{form}</channel_format><desc><channels>{listed}</channels></desc>"
+        "</info>").encode())
+
+
+def xdf_samples(number, stamps, values, code="d"):
+    """A chunk of samples; a stamp None is left to the reader."""
+    content = struct.pack("<IBI", number, 4, len(stamps))
+    for time_s, value in zip(stamps, values):
+        content += b"\0" if time_s is None else struct.pack("<Bd", 8, time_s)
+        content += struct.pack("<" + code, value)
+    return chunk(3, content)
+
+
+def xdf(folder, stamp=lambda i, time_s: time_s, slope=2e-5, offset_s=-4321.5, offsets=lambda at_s, by_s: by_s,
+        force=FORCE, unit="N", form=("double64", "d"), spoil=lambda parts: parts):
+    """The platform by the recorder's clock, the stick by one that is `offset_s` behind and runs `slope` faster."""
+    parts = [b"XDF:", chunk(1, b"<?xml version=\"1.0\"?><info><version>1.0</version></info>"),
+             xdf_header(7, "platform", [("y", "m/s^2")]), xdf_header(2, "stick", [("force", unit)], form[0]),
+             xdf_header(3, "markers", [("text", "")], "string", 0)]
+    random = numpy.random.default_rng(3)
+    for first in range(0, ROWS, 50):
+        rows = range(first, min(first + 50, ROWS))
+        at = [RECORDER_S + TIME[i] for i in rows]
+        parts.append(xdf_samples(7, at, ACC[first:first + 50]))
+        theirs = [stamp(i, (t - offset_s) / (1.0 + slope)) for i, t in zip(rows, at)]
+        parts.append(xdf_samples(2, theirs, force[first:first + 50], form[1]))
+        if first % 500 == 0:
+            their_s = (at[0] - offset_s) / (1.0 + slope)
+            by_s = offsets(at[0] - RECORDER_S, at[0] - their_s + 1e-4 * random.standard_normal())
+            if by_s is not None:
+                parts.append(chunk(4, struct.pack("<Idd", 2, their_s, by_s)))
+            parts.append(chunk(4, struct.pack("<Idd", 7, at[0], 1e-5)))
+            parts.append(chunk(5, bytes(16)))
+            parts.append(chunk(3, struct.pack("<IBBBdBB", 3, 1, 1, 8, at[0], 1, 2) + b"go"))
+    path = folder / "ride.xdf"
+    path.write_bytes(b"".join(spoil(parts)))
+    return path, XDF_MAP
+
+
+def streams(name, right, **form):
+    MEMBERS.append(Member("B11", "XDF, " + name, lambda folder: xdf(folder, **form), right))
+
+
+streams("two streams with clocks of their own", Right())
+streams("a clock that runs 1 % fast", Right(), slope=0.01)
+streams("stamps at each tenth sample alone", Right(), stamp=lambda i, time_s: time_s if i % 10 == 0 else None,
+        slope=0.0)
+streams("stamps with a jitter of 1 ms", Right(),
+        stamp=lambda i, time_s, noise=numpy.random.default_rng(4).uniform(-1e-3, 1e-3, ROWS): time_s + noise[i])
+streams("whole numbers of 16 bits", Right(), force=numpy.round(1000 * FORCE).astype(int), form=("int16", "h"),
+        unit="mN")
+streams("one clock offset in ten is wrong by 50 ms", Right(),
+        offsets=lambda at_s, by_s: by_s + 0.05 * (at_s == 30.0))
+streams("cut off", Right(), spoil=lambda parts: parts[:200] + [parts[200][:20]])
+streams("no clock offsets, and a clock of its own", Refused(("no clock offsets of 'stick'",)),
+        offsets=lambda at_s, by_s: None)
+streams("no clock offsets, and 0.3 s late", Refused(("no clock offsets of 'stick'",)),
+        offsets=lambda at_s, by_s: None, offset_s=-0.3, slope=0.0)
+streams("a clock that was set by 0.5 s", Refused(("clock offsets of 'stick'",)),
+        offsets=lambda at_s, by_s: by_s + 0.5 * (at_s > 30.0))
+streams("stamps that go back", Refused(("do not go on",)),
+        stamp=lambda i, time_s: time_s - 5.0 * (i >= 3000))
+streams("50 samples lost, and stamps at the first alone", Unusable(""), slope=0.0,
+        stamp=lambda i, time_s: time_s if i == 0 else None, force=numpy.concatenate([FORCE[:3000], FORCE[3050:],
+                                                                                    FORCE[:50]]))
+streams("a chunk that states too many samples", Refused(("byte",)),
+        spoil=lambda parts: parts[:5] + [parts[5].replace(struct.pack("<BI", 4, 50), struct.pack("<BI", 4, 51))] + parts[6:])
 MEMBERS.append(Member("B11", "a folder", lambda folder: (folder, []), Refused(("a folder",))))
 
 

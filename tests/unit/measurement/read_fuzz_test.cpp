@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <random>
+#include <sstream>
 
 #include "apps/libraries/measurement/read.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -227,6 +228,71 @@ TEST(ReadFuzzTest, ASpoiltSessionIsReadOrRefused) {
   }
   EXPECT_GT(count.read, 300);
   EXPECT_GT(count.refused, 300);
+}
+
+template <typename... Values>
+std::string packed(const Values&... values) {
+  std::string bytes;
+  (bytes.append(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
+  return bytes;
+}
+
+std::string xdf_chunk(std::uint16_t tag, const std::string& content) {
+  const auto length = static_cast<std::uint32_t>(content.size() + sizeof(tag));
+  std::ostringstream chunk;
+  chunk << packed(std::uint8_t{4}, length, tag) << content;
+  return chunk.str();
+}
+
+// Two streams of 150 samples with clock offsets.
+std::string good_xdf() {
+  std::ostringstream file;
+  file << "XDF:";
+  for (std::uint32_t id = 1; id < 3; ++id) {
+    std::ostringstream header;
+    header << packed(id) << "<info><name>s" << id
+           << "</name><channel_count>1</channel_count><nominal_srate>100</nominal_srate>"
+              "<channel_format>double64</channel_format></info>";
+    file << xdf_chunk(2, header.str());
+  }
+  const std::uint8_t one = 1, eight = 8;
+  for (int i = 0; i < 150; ++i) {
+    for (std::uint32_t id = 1; id < 3; ++id) {
+      const double t = 70.0 + 0.01 * i;
+      const double value = i % (5 + 2 * static_cast<int>(id)) * 0.1;
+      file << xdf_chunk(3, packed(id, one, one, eight, t, value));
+      if (i % 50 == 0) file << xdf_chunk(4, packed(id, t, 0.5));
+    }
+  }
+  return file.str();
+}
+
+TEST(ReadFuzzTest, ASpoiltXdfFileIsReadOrRefused) {
+  const std::string path = testing::TempDir() + "fuzz.xdf";
+  ReadOptions options;
+  for (const char* wish : {"s1.1=a_y [m/s^2]", "s2.1=f [N]"}) {
+    options.mapping.columns.push_back(parse_wish(wish));
+  }
+  const std::string good = good_xdf();
+  Random random(20261127);
+  Count count;
+  for (int run = 0; run < 2000; ++run) {
+    std::string bytes = good;
+    switch (below(random, 3)) {
+      case 0:
+        flip_byte(bytes, random);
+        break;
+      case 1:
+        cut(bytes, random);
+        break;
+      default:
+        plant_number(bytes, random);
+    }
+    SCOPED_TRACE("run " + std::to_string(run));
+    ASSERT_NO_THROW(try_to_read(path, bytes, count, options));
+  }
+  EXPECT_GT(count.read, 200);
+  EXPECT_GT(count.refused, 200);
 }
 
 }  // namespace

@@ -245,12 +245,12 @@ TEST(ReadTest, AKindThatIsNotReadIsNamedWithTheLineThatConvertsIt) {
     const char* line;
   };
   for (const Case& each :
-       {Case{std::string("SQLite format 3\0\1\2", 18), "rosbag2's .db3", "ros2 bag convert"},
+       {Case{std::string("SQLite format 3\0\1\2", 18), "rosbag2's .db3", "rosbags-convert"},
         Case{"\x28\xB5\x2F\xFD rest", "Zstandard", "zstd -d"},
         Case{"\x1F\x8B rest", "gzip", "gunzip"},
         Case{"PK\x03\x04 rest", "zip archive", "libreoffice --convert-to csv"},
         Case{"TDSm rest", "TDMS", "nptdms"}, Case{"MDF     4.10", "ASAM", "asammdf"},
-        Case{"XDF: rest", "XDF", "pyxdf"}, Case{"#ROSBAG V2.0\n", "ROS 1", "mcap convert"}}) {
+        Case{"#ROSBAG V2.0\n", "ROS 1", "rosbags-convert"}}) {
     const std::string error = complaint(each.bytes);
     EXPECT_THAT(error, HasSubstr(each.kind));
     EXPECT_THAT(error, HasSubstr(each.line));

@@ -15,4 +15,7 @@ namespace stillhand::measurement {
 std::vector<double> at_times(const std::vector<double>& time_s, const std::vector<double>& values,
                              const std::vector<double>& wanted_s, double longest_s);
 
+/// Four usual steps: rows that are further apart are a gap.  0 of fewer than two rows.  Pure.
+double longest_bridge_s(const std::vector<double>& time_s);
+
 }  // namespace stillhand::measurement

@@ -20,9 +20,6 @@ namespace {
 using recording::Cell;
 using recording::CellKind;
 
-// Rows of another topic that are further apart than this many of its usual steps are a gap.
-constexpr double kLongestBridge_steps = 4.0;
-
 double number_of(const Cell& cell) {
   if (const auto* value = std::get_if<double>(&cell)) return *value;
   if (const auto* value = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*value);
@@ -119,15 +116,6 @@ struct TopicRows {
     arrange(time_ns);
     for (auto& column : values) arrange(column);
     return dropped;
-  }
-
-  [[nodiscard]] double longest_bridge_s() const {
-    std::vector<double> steps_s;
-    for (std::size_t i = 1; i < time_s.size(); ++i) steps_s.push_back(time_s[i] - time_s[i - 1]);
-    if (steps_s.empty()) return 0.0;
-    const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-    std::ranges::nth_element(steps_s, middle);
-    return kLongestBridge_steps * *middle;
   }
 };
 
@@ -336,7 +324,7 @@ class BagTable : public TableFile {
     out.time_s = by_topic.at(first).time_s;
     for (auto& [number, rows] : by_topic) {
       const bool same_times = rows.time_s == out.time_s;
-      const double longest_s = rows.longest_bridge_s();
+      const double longest_s = longest_bridge_s(rows.time_s);
       for (std::size_t i = 0; i < rows.wanted.size(); ++i) {
         out.values[rows.wanted[i]] =
             same_times ? std::move(rows.values[i])

@@ -12,6 +12,7 @@
 #include "apps/libraries/measurement/tables/table_file.hpp"
 #include "apps/libraries/measurement/tables/text_encoding.hpp"
 #include "apps/libraries/measurement/tables/text_table.hpp"
+#include "apps/libraries/measurement/tables/xdf_table.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
 
@@ -38,11 +39,11 @@ struct ForeignKind {
   std::string_view convert;  // FILE stands for its name
 };
 using namespace std::string_view_literals;
-constexpr std::array<ForeignKind, 20> kForeignKinds{{
+constexpr std::array<ForeignKind, 19> kForeignKinds{{
     {"SQLite format 3\0"sv, "an SQLite file (rosbag2's .db3)",
-     "MCAP: printf 'output_bags: [{uri: mcap, storage_id: mcap, all_topics: true}]' > o.yaml; "
-     "ros2 bag convert -i FILE -o o.yaml"},
-    {"#ROSBAG V2.0", "a bag of ROS 1", "MCAP: mcap convert FILE out.mcap"},
+     "MCAP: rosbags-convert --src $(dirname FILE) --dst out --dst-storage mcap"},
+    {"#ROSBAG V2.0", "a bag of ROS 1",
+     "MCAP: rosbags-convert --src FILE --dst out --dst-storage mcap"},
     {"\x28\xB5\x2F\xFD", "a file compressed with Zstandard", "the file in it: zstd -d FILE"},
     {"\x1F\x8B", "a file compressed with gzip", "the file in it: gunzip --keep FILE"},
     {"\xFD"
@@ -50,9 +51,9 @@ constexpr std::array<ForeignKind, 20> kForeignKinds{{
      "a file compressed with xz", "the file in it: xz --decompress --keep FILE"},
     {"BZh", "a file compressed with bzip2", "the file in it: bunzip2 --keep FILE"},
     {"7z\xBC\xAF\x27\x1C", "an archive of 7-Zip", "the file in it: 7z x FILE"},
-    {"PK\x03\x04", "a zip archive (.xlsx, .ods, .npz, .zip)",
-     "a CSV of the sheet: libreoffice --convert-to csv FILE; of numpy's .npz its arrays, of others "
-     "what is in them: unzip FILE"},
+    {"PK\x03\x04", "a zip archive (.xlsx, .ods, .zip)",
+     "a CSV of the sheet: libreoffice --convert-to csv FILE; of others what is in them: unzip "
+     "FILE"},
     {"\xD0\xCF\x11\xE0", "an old Excel file (.xls)",
      "a CSV of the sheet: libreoffice --convert-to csv FILE"},
     {"TDSm", "a TDMS file of LabVIEW",
@@ -61,11 +62,6 @@ constexpr std::array<ForeignKind, 20> kForeignKinds{{
     {"MDF ", "a measurement file of ASAM (.mf4)",
      "a CSV: python3 -c \"import asammdf; asammdf.MDF('FILE').export('csv', 'out.csv', "
      "single_time_base=True)\""},
-    {"XDF:", "an XDF file of LabRecorder",
-     "a CSV a stream: python3 -c \"import numpy, pyxdf; [numpy.savetxt(f'{i}.csv', "
-     "numpy.column_stack("
-     "(s['time_stamps'], s['time_series'])), delimiter=',') for i, s in "
-     "enumerate(pyxdf.load_xdf('FILE')[0])]\""},
     {"PAR1", "a Parquet file",
      "a CSV: python3 -c \"import pandas; pandas.read_parquet('FILE').to_csv('out.csv')\""},
     {"\x93NUMPY", "an array of NumPy",
@@ -80,8 +76,8 @@ constexpr std::array<ForeignKind, 20> kForeignKinds{{
     {"LOGG", "a log of a CAN bus (.blf)",
      "a CSV: python3 -m can.logconvert FILE out.csv, and then its signals by their database"},
     {"0       ", "a European data format (.edf)",
-     "a CSV: python3 -c \"import mne; mne.io.read_raw_edf('FILE').to_data_frame()"
-     ".to_csv('out.csv')\""},
+     "a CSV: python3 -c \"import mne; mne.io.read_raw_edf('FILE').to_data_frame("
+     "scalings={'eeg': 1}).to_csv('out.csv')\""},
     {"%PDF", "a PDF", "the table that it was made from"},
 }};
 
@@ -91,6 +87,12 @@ constexpr ForeignKind kC3d{
     "a CSV: python3 -c \"import ezc3d, numpy; c = ezc3d.c3d('FILE'); numpy.savetxt('out.csv', "
     "c['data']['analogs'][0].T, delimiter=',')\""};
 
+// A zip archive whose first file is an array.
+constexpr ForeignKind kNpz{
+    "PK\x03\x04", "arrays of NumPy (.npz)",
+    "a CSV: python3 -c \"import numpy; z = numpy.load('FILE'); numpy.savetxt('out.csv', "
+    "numpy.column_stack([z[k] for k in z]), delimiter=',', header=','.join(z), comments='')\""};
+
 [[noreturn]] void refuse_kind(const std::string& path, const ForeignKind& foreign) {
   std::string convert(foreign.convert);
   if (const std::size_t at = convert.find("FILE"); at != std::string::npos)
@@ -99,6 +101,9 @@ constexpr ForeignKind kC3d{
 }
 
 void refuse_foreign(const std::string& path, std::string_view begin) {
+  if (begin.starts_with(kNpz.begin) && begin.find(".npy") != std::string_view::npos) {
+    refuse_kind(path, kNpz);
+  }
   for (const ForeignKind& foreign : kForeignKinds) {
     if (begin.starts_with(foreign.begin)) refuse_kind(path, foreign);
   }
@@ -141,6 +146,7 @@ FileKind kind_of(const std::string& path) {
   // MCAP specification, "Magic".  Only five of its eight bytes: the rest may be cut off.
   if (begin.starts_with("\x89MCAP")) return FileKind::kMcap;
   if (is_any_of(begin, {"MATLAB 5.0", "MATLAB 7.3"})) return FileKind::kMatlab;
+  if (begin.starts_with("XDF:")) return FileKind::kXdf;
   if (begin.starts_with("\x89HDF\r\n\x1a\n")) return FileKind::kHdf5;
   if (is_any_of(begin, {"RIFF", "RF64", "riff", "FORM", "fLaC", "caff"})) return FileKind::kSound;
   // MATLAB's versions before 5, and HDF5 behind a user block, have no magic: the name decides.
@@ -162,6 +168,8 @@ std::unique_ptr<TableFile> open_table(const std::string& path, const TextForm& f
       return guarded_table(path, hdf5_reader(), most_values);
     case FileKind::kSound:
       return guarded_table(path, sound_reader(), most_values);
+    case FileKind::kXdf:
+      return xdf_table(read_text(path), path, most_values);
     case FileKind::kText:
       break;
   }
