@@ -24,8 +24,9 @@ Estimate each_repeat(const Conditions& conditions, Value value, const Labels&...
 
 std::string step_name(const std::string& from, const std::string& to) { return from + "-" + to; }
 
-bool has(const std::string& label, std::size_t measure) {
-  return measure < kMeasuresOfAll || std::ranges::find(kCancelling, label) != kCancelling.end();
+bool has(const std::string& label, const Number& number) {
+  return number.still == session::Still::kGiven ||
+         std::ranges::find(kCancelling, label) != kCancelling.end();
 }
 
 Conditions own_trials(const LoopResult& result) {
@@ -51,21 +52,22 @@ Estimate estimate(const std::vector<double>& values) {
   return out;
 }
 
-Estimate measured(const Conditions& conditions, const std::string& label, const Measure& measure) {
-  return each_repeat(conditions, measure.of, label);
+Estimate measured(const Conditions& conditions, const std::string& label, const Number& number) {
+  const auto value = [&](const TrialRun& run) { return number.of(run); };
+  return each_repeat(conditions, value, label);
 }
 
 Estimate change(const Conditions& conditions, const std::string& from, const std::string& to,
-                const Measure& measure) {
+                const Number& number) {
   const auto difference = [&](const TrialRun& first, const TrialRun& second) {
-    return measure.of(second) - measure.of(first);
+    return number.of(second) - number.of(first);
   };
   return each_repeat(conditions, difference, from, to);
 }
 
-Estimate restored(const Conditions& conditions, const std::string& label, const Measure& measure) {
+Estimate restored(const Conditions& conditions, const std::string& label, const Number& number) {
   const auto share = [&](const TrialRun& a, const TrialRun& b, const TrialRun& x) {
-    return (measure.of(b) - measure.of(x)) / (measure.of(b) - measure.of(a));
+    return (number.of(b) - number.of(x)) / (number.of(b) - number.of(a));
   };
   return each_repeat(conditions, share, std::string("A"), std::string("B"), label);
 }
@@ -85,8 +87,8 @@ LoopDecision decide(const Conditions& conditions, const LoopResult& result) {
                            });
   LoopDecision out;
   // The force left is the feedthrough's: what the motor does about the drive counts as left.
-  if (drive_alone) out.measure = kRmsError;
-  const Measure& measure = kMeasures[out.measure];
+  if (drive_alone) out.measure = &kNumbers[index_of("rms_error_mm")];
+  const Number& measure = *out.measure;
   out.over_c = change(conditions, "C", "C+", measure);
   out.over_c_prime = change(conditions, "C'", "C+", measure);
   out.augmented = result.rounds[result.final_round].augmented;

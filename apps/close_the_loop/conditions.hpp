@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/close_the_loop/closed_loop.hpp"
+#include "apps/libraries/session/core/trial_numbers.hpp"
 
 namespace stillhand::close_the_loop {
 
@@ -23,44 +24,12 @@ inline constexpr std::array<std::pair<const char*, const char*>, 2> kSteps{
 /// "C-C'"
 std::string step_name(const std::string& from, const std::string& to);
 
-/// One number of a tracking trial.
-struct Measure {
-  const char* key;    ///< in summary.json
-  const char* title;  ///< with its unit
-  int decimals;
-  double (*of)(const TrialRun&);
-};
+using session::index_of;
+using session::kNumbers;
+using session::Number;
 
-/// The paper's three metrics come first, session::kMetrics; README, "Measures".
-inline constexpr std::array<Measure, 10> kMeasures{{
-    {"rms_error_mm", "RMS error [mm]", 2,
-     [](const TrialRun& run) { return run.metrics.rms_error_mm; }},
-    {"dwell_ratio", "dwell ratio [-]", 3,
-     [](const TrialRun& run) { return run.metrics.dwell_ratio; }},
-    {"crossover_hz", "crossover f_c [Hz]", 3,
-     [](const TrialRun& run) { return run.metrics.crossover_hz; }},
-    {"force_left_n", "force left [N]", 3, [](const TrialRun& run) { return run.forces.left_n; }},
-    {"hand_acceleration_m_s2", "hand's acceleration [m/s²]", 3,
-     [](const TrialRun& run) { return run.forces.acceleration_m_s2; }},
-    {"motor_force_n", "motor's force [N]", 3,
-     [](const TrialRun& run) { return run.forces.motor_n; }},
-    {"volitional_force_n", "subject's force [N]", 3,
-     [](const TrialRun& run) { return run.forces.volitional_n; }},
-    {"crossover_reference_hz", "crossover by the reference [Hz]", 3,
-     [](const TrialRun& run) { return run.metrics.crossover_reference_hz; }},
-    {"cancelled_share", "feedthrough force cancelled [-]", 3,
-     [](const TrialRun& run) { return run.cancelled_share; }},
-    {"counterforce_delay_ms", "delay of the counterforce [ms]", 1,
-     [](const TrialRun& run) { return 1e3 * run.counterforce_delay_s; }},
-}};
-/// Of kMeasures, those that every condition has; the two behind them belong to kCancelling.
-inline constexpr std::size_t kMeasuresOfAll = 8;
-/// Positions in kMeasures.
-inline constexpr std::size_t kRmsError = 0;
-inline constexpr std::size_t kForceLeft = 3;
-inline constexpr std::size_t kReference = 7;
-/// Whether a condition has a measure.
-bool has(const std::string& label, std::size_t measure);
+/// Whether a condition has a number: some are of the motor alone.
+bool has(const std::string& label, const Number& number);
 
 /// The trials of each condition, by its label.  Entry r of each is of repeat r: same motion, same
 /// target, same remnant.  At least one entry.
@@ -78,21 +47,21 @@ struct Estimate {
 };
 
 Estimate estimate(const std::vector<double>& values);
-/// A measure of a condition.
-Estimate measured(const Conditions& conditions, const std::string& label, const Measure& measure);
-/// Differences `to` - `from` of a measure, repeat by repeat.
+/// A number of a condition.
+Estimate measured(const Conditions& conditions, const std::string& label, const Number& number);
+/// Differences `to` - `from` of a number, repeat by repeat.
 Estimate change(const Conditions& conditions, const std::string& from, const std::string& to,
-                const Measure& measure);
-/// (B - X)/(B - A) of a measure, repeat by repeat.
-Estimate restored(const Conditions& conditions, const std::string& label, const Measure& measure);
+                const Number& number);
+/// (B - X)/(B - A) of a number, repeat by repeat.
+Estimate restored(const Conditions& conditions, const std::string& label, const Number& number);
 
 /// Whether C+ is kept, METHOD Eq. CL-10: by what its motor leaves in trials that no fit has seen.
 struct LoopDecision {
-  std::size_t measure = kForceLeft;  ///< in kMeasures
-  Estimate over_c;                   ///< change of the measure from C to C+, repeat by repeat
-  Estimate over_c_prime;             ///< from C' to C+
-  bool augmented = false;            ///< C+ ran with the augmented model; else it is C'
-  const char* model_of = "C";        ///< condition whose model the loop writes
+  const Number* measure = &kNumbers[index_of("force_left_n")];
+  Estimate over_c;             ///< change of the measure from C to C+, repeat by repeat
+  Estimate over_c_prime;       ///< from C' to C+
+  bool augmented = false;      ///< C+ ran with the augmented model; else it is C'
+  const char* model_of = "C";  ///< condition whose model the loop writes
 
   [[nodiscard]] bool kept() const {
     return augmented && over_c.mean < 0.0 && over_c_prime.mean < 0.0;

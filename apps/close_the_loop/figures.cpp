@@ -2,6 +2,7 @@
 // The report's figures.
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "apps/close_the_loop/output.hpp"
 #include "apps/libraries/measurement/grid.hpp"
@@ -30,17 +31,17 @@ std::vector<Shown> shown(const LoopResult& result) {
           {&result.plus(), Colour::kConditionCPlus}};
 }
 
-// Bars of one measure, a condition each, with the interval of its mean.
-report::Panel measure_panel(const LoopRecord& record, const Measure& measure) {
+// Bars of one number, a condition each, with the interval of its mean.
+report::Panel number_panel(const LoopRecord& record, const Number& number) {
   report::Panel panel;
-  panel.title = measure.title;
+  panel.title = number.title;
   panel.x.ticks = {};
   panel.y.low = 0.0;
   panel.legend = report::Legend::kNone;
   double at = 0.0;
   for (const Shown& each : shown(record.result)) {
     at += 1.0;
-    const Estimate value = measured(record.conditions, each.trial->label, measure);
+    const Estimate value = measured(record.conditions, each.trial->label, number);
     panel.series.push_back(
         {.kind = report::Kind::kBars, .colour = each.colour, .x = {at}, .y = {value.mean}});
     if (value.interval95) {
@@ -71,8 +72,8 @@ report::Figure tracking_figure(const LoopRecord& record) {
   figure.columns = 3;
   figure.height_px = 560;
   constexpr std::size_t kShown = 6;
-  for (std::size_t k = 0; k < kShown; ++k) {
-    figure.panels.push_back(measure_panel(record, kMeasures[k]));
+  for (const Number& number : kNumbers | std::views::take(kShown)) {
+    figure.panels.push_back(number_panel(record, number));
   }
   return figure;
 }

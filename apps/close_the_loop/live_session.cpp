@@ -74,8 +74,8 @@ void judge_cancellation(const std::filesystem::path& recording,
   const auto add = [&](TrialRun& run) {
     const auto trial = std::ranges::find(session.trials, run.number, &session::TrialResult::number);
     if (trial == session.trials.end()) return;
-    run.cancelled_share = trial->cancelled_share.value_or(0.0);
-    run.counterforce_delay_s = trial->counterforce_delay_s.value_or(0.0);
+    run.cancelled_share = trial->cancelled_share;
+    run.counterforce_delay_s = trial->counterforce_delay_s;
     run.forces = trial->forces;
   };
   for (TrialRun& run : result.trials) add(run);

@@ -8,7 +8,7 @@
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/report/plot/figure_table.hpp"
 #include "apps/libraries/report/text.hpp"
-#include "apps/libraries/session/paper_table.hpp"
+#include "apps/libraries/session/numbers_json.hpp"
 #include "services/files/rig/sealed_file.hpp"
 #include "version.hpp"
 
@@ -17,85 +17,81 @@ namespace {
 
 using nlohmann::ordered_json;
 using report::or_null;
-using session::kMetrics;
 
 ordered_json repeats_json(const Conditions& conditions, const std::string& label,
-                          const Measure& measure) {
+                          const Number& number) {
   ordered_json list = ordered_json::array();
-  for (const TrialRun& run : conditions.at(label)) list.push_back(or_null(measure.of(run)));
+  for (const TrialRun& run : conditions.at(label)) list.push_back(or_null(number.of(run)));
   return list;
 }
 
-// The three metrics have the shape of a study's summary, with one subject.
+// A sample has the shape of a study's summary, with one subject.
 ordered_json condition_json(const Conditions& conditions, const std::string& label) {
   ordered_json condition;
   ordered_json intervals;
-  const bool cancels = std::ranges::find(kCancelling, label) != kCancelling.end();
-  for (std::size_t k = 0; k < kMeasures.size(); ++k) {
-    const Measure& measure = kMeasures[k];
-    const Estimate value = measured(conditions, label, measure);
-    if (k < kReference) {
-      condition[measure.key] = {{"mean", or_null(value.mean)}};
-      if (k < kMetrics.size()) {
-        condition[measure.key]["std"] = nullptr;
-        condition[measure.key]["per_subject"] = ordered_json::array({or_null(value.mean)});
+  for (const Number& number : session::numbers(session::kLoop)) {
+    const Estimate value = measured(conditions, label, number);
+    ordered_json& out = condition[number.key];
+    if (!has(label, number)) {
+      if (number.still == session::Still::kLeftOut) condition.erase(number.key);
+    } else if (number.shape == session::Shape::kPlain) {
+      out = or_null(value.mean);
+      intervals[number.key] = or_null(value.interval95);
+    } else {
+      out["mean"] = or_null(value.mean);
+      if (number.shape == session::Shape::kSample) {
+        out["std"] = nullptr;
+        out["per_subject"] = ordered_json::array({or_null(value.mean)});
       }
-      condition[measure.key]["interval95"] = interval_json(value.interval95);
-      condition[measure.key]["repeats"] = repeats_json(conditions, label, measure);
-    } else if (k < kMeasuresOfAll || cancels) {
-      condition[measure.key] = or_null(value.mean);
-      intervals[measure.key] = interval_json(value.interval95);
+      out["interval95"] = or_null(value.interval95);
+      out["repeats"] = repeats_json(conditions, label, number);
     }
   }
-  if (!cancels) condition["cancelled_share"] = nullptr;
   condition["interval95"] = intervals;
   return condition;
 }
 
 ordered_json restoration_json(const Conditions& conditions, const std::string& label) {
-  ordered_json json;
-  for (std::size_t k = 0; k < kMetrics.size(); ++k) {
-    json[kMetrics[k].restoration_key] = or_null(restored(conditions, label, kMeasures[k]).mean);
-  }
-  return json;
+  return session::of_each_metric(&Number::name, [&](std::size_t k) {
+    return or_null(restored(conditions, label, kNumbers[k]).mean);
+  });
 }
 
 ordered_json restoration_intervals_json(const Conditions& conditions) {
   ordered_json json;
   for (const char* label : kCancelling) {
-    for (std::size_t k = 0; k < kMetrics.size(); ++k) {
-      json[label][kMetrics[k].restoration_key] =
-          interval_json(restored(conditions, label, kMeasures[k]).interval95);
-    }
+    json[label] = session::of_each_metric(&Number::name, [&](std::size_t k) {
+      return or_null(restored(conditions, label, kNumbers[k]).interval95);
+    });
   }
   return json;
+}
+
+ordered_json change_json(const Estimate& change) {
+  return {{"mean_difference", or_null(change.mean)}, {"interval95", or_null(change.interval95)}};
 }
 
 // C to C' is what following does, C' to C+ what the effect's model does.
 ordered_json changes_json(const Conditions& conditions) {
   ordered_json json;
   for (const auto& [from, to] : kSteps) {
-    for (const Measure& measure : kMeasures) {
-      const Estimate difference = change(conditions, from, to, measure);
-      json[step_name(from, to)][measure.key] = {
-          {"mean_difference", or_null(difference.mean)},
-          {"interval95", interval_json(difference.interval95)}};
+    for (const Number& number : session::numbers(session::kLoop)) {
+      json[step_name(from, to)][number.key] = change_json(change(conditions, from, to, number));
     }
   }
   return json;
 }
 
 ordered_json finding_json(const Finding& finding) {
-  return {
-      {"kind", finding.kind},
-      {"channel", or_null(finding.channel)},
-      {"where", finding.where},
-      {"force_n", {{"value", finding.explained_n}, {"ci95", interval_json(finding.interval95)}}},
-      {"counts", finding.counts},
-      {"explained_rms_n", finding.explained_n},
-      {"heldout_rmse_before", finding.before_n},
-      {"heldout_rmse_after", finding.after_n},
-      {"evidence", finding.evidence}};
+  return {{"kind", finding.kind},
+          {"channel", or_null(finding.channel)},
+          {"where", finding.where},
+          {"force_n", {{"value", finding.explained_n}, {"ci95", or_null(finding.interval95)}}},
+          {"counts", finding.counts},
+          {"explained_rms_n", finding.explained_n},
+          {"heldout_rmse_before", finding.before_n},
+          {"heldout_rmse_after", finding.after_n},
+          {"evidence", finding.evidence}};
 }
 
 ordered_json findings_json(const Verdict& verdict) {
@@ -106,13 +102,9 @@ ordered_json findings_json(const Verdict& verdict) {
 
 // Eq. CL-10.
 ordered_json decision_json(const LoopDecision& decision) {
-  const auto step = [](const Estimate& change) {
-    return ordered_json{{"mean_difference", or_null(change.mean)},
-                        {"interval95", interval_json(change.interval95)}};
-  };
-  return {{"measure", kMeasures[decision.measure].key},
-          {"C-C+", step(decision.over_c)},
-          {"C'-C+", step(decision.over_c_prime)},
+  return {{"measure", decision.measure->key},
+          {"C-C+", change_json(decision.over_c)},
+          {"C'-C+", change_json(decision.over_c_prime)},
           {"model_of", decision.model_of}};
 }
 
@@ -139,11 +131,6 @@ ordered_json round_json(const Round& round, bool kept) {
 }
 
 }  // namespace
-
-ordered_json interval_json(const std::optional<std::pair<double, double>>& interval) {
-  if (!interval) return nullptr;
-  return {interval->first, interval->second};
-}
 
 ordered_json prediction_json(const Verdict& verdict) {
   const diagnosis::Diagnosis& body = verdict.body;
@@ -300,13 +287,13 @@ std::string without_effect(const Verdict& verdict, double least_force_n) {
 std::string kept_text(const LoopRecord& record) {
   const LoopDecision& decision = record.decision;
   if (!decision.augmented) return {};
-  const Measure& measure = kMeasures[decision.measure];
+  const int decimals = decision.measure->decimals + 1;
   const std::size_t repeats = record.conditions.at("A").size();
   return std::string("C+ is ") + (decision.kept() ? "kept" : "not kept") + ": over " +
          std::to_string(repeats) + (repeats == 1 ? " repeat" : " repeats") +
-         " that no fit has seen, its " + measure.title + " differs from that of C by " +
-         with_interval(decision.over_c, measure.decimals) + " and from that of C' by " +
-         with_interval(decision.over_c_prime, measure.decimals) +
+         " that no fit has seen, its " + decision.measure->title + " differs from that of C by " +
+         with_interval(decision.over_c, decimals) + " and from that of C' by " +
+         with_interval(decision.over_c_prime, decimals) +
          (decision.certain() ? ", and both intervals exclude 0"
                              : ", as far as these repeats show") +
          ". The canceller gets the model of " + decision.model_of + ".";

@@ -53,7 +53,6 @@ struct LoopRecord {
 /// verdict.json: kind, channel and findings, written before the truth is opened.
 std::string verdict_json(const Verdict& verdict);
 /// Parts of summary.json.
-nlohmann::ordered_json interval_json(const std::optional<std::pair<double, double>>& interval);
 nlohmann::ordered_json prediction_json(const Verdict& verdict);
 nlohmann::ordered_json latency_json(const std::optional<Latency>& latency);
 nlohmann::ordered_json treatments_json(const ConvertedModel& control);
@@ -69,6 +68,10 @@ std::string without_effect(const Verdict& verdict, double least_force_n);
 std::string kept_text(const LoopRecord& record);
 /// "mean [low, high]" of an estimate, or the mean alone.
 std::string with_interval(const Estimate& estimate, int decimals, double factor = 1.0);
+
+/// Every number of each condition, and what each restores of the paper's metrics.
+report::Table measures_table(const Conditions& conditions);
+report::Table restoration_table(const Conditions& conditions);
 
 /// report.html with its figures.
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings);

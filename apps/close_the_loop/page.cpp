@@ -4,7 +4,6 @@
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
-#include "apps/libraries/session/paper_table.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
@@ -12,46 +11,8 @@ namespace {
 using report::Cell;
 using report::Emphasis;
 using report::number;
-using session::kMetrics;
 
 std::string percent(const Estimate& share) { return with_interval(share, 0, 100.0) + " %"; }
-
-report::Table measures_table(const Conditions& conditions) {
-  report::Table table;
-  table.caption = "Means over the repeats, and the paired differences with their 95 % intervals";
-  table.header = {""};
-  for (const char* label : kConditions) table.header.emplace_back(label);
-  table.header.insert(table.header.end(), {"C′ − C", "C+ − C′"});
-  for (std::size_t k = 0; k < kMeasures.size(); ++k) {
-    std::vector<Cell> row{kMeasures[k].title};
-    for (const char* label : kConditions) {
-      row.emplace_back(has(label, k) ? number(measured(conditions, label, kMeasures[k]).mean,
-                                              kMeasures[k].decimals)
-                                     : std::string());
-    }
-    for (const auto& [from, to] : kSteps) {
-      row.emplace_back(
-          with_interval(change(conditions, from, to, kMeasures[k]), kMeasures[k].decimals));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-report::Table restoration_table(const Conditions& conditions) {
-  report::Table table;
-  table.caption = "Share of A's advantage that a condition restores: (B − X)/(B − A)";
-  table.header = {"", "C", "C'", "C+", "paper's C"};
-  for (std::size_t k = 0; k < kMetrics.size(); ++k) {
-    std::vector<Cell> row{kMetrics[k].title};
-    for (const char* label : kCancelling) {
-      row.emplace_back(percent(restored(conditions, label, kMeasures[k])));
-    }
-    row.emplace_back(number(kMetrics[k].paper_restored_percent, 0) + " %");
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
 
 report::Table prediction_table(const Verdict& verdict) {
   report::Table table;
@@ -96,9 +57,10 @@ report::Table rounds_table(const LoopResult& result) {
 std::string lead(const LoopRecord& record) {
   const LoopResult& result = record.result;
   const Verdict& verdict = result.verdict();
-  const Measure& error = kMeasures[kRmsError];
+  const Number& error = kNumbers[index_of("rms_error_mm")];
   const auto left = [&](const char* label) {
-    return number(measured(record.conditions, label, kMeasures[kForceLeft]).mean, 2) + " N";
+    const Number& force = kNumbers[index_of("force_left_n")];
+    return number(measured(record.conditions, label, force).mean, 2) + " N";
   };
   const std::string lacks = verdict.strongest() != nullptr
                                 ? "The paper's model lacks: " + verdict.kind() + ". "
@@ -166,6 +128,42 @@ void add_truth(report::Page& page, const LoopRecord& record) {
 }
 
 }  // namespace
+
+report::Table measures_table(const Conditions& conditions) {
+  report::Table table;
+  table.caption = "Means over the repeats, and the paired differences with their 95 % intervals";
+  table.header = {""};
+  for (const char* label : kConditions) table.header.emplace_back(label);
+  table.header.insert(table.header.end(), {"C′ − C", "C+ − C′"});
+  for (const Number& shown : session::numbers(session::kLoop)) {
+    std::vector<Cell> row{shown.title};
+    for (const char* label : kConditions) {
+      row.emplace_back(has(label, shown)
+                           ? number(measured(conditions, label, shown).mean, shown.decimals + 1)
+                           : "");
+    }
+    for (const auto& [from, to] : kSteps) {
+      row.emplace_back(with_interval(change(conditions, from, to, shown), shown.decimals + 1));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+report::Table restoration_table(const Conditions& conditions) {
+  report::Table table;
+  table.caption = "Share of A's advantage that a condition restores: (B − X)/(B − A)";
+  table.header = {"", "C", "C'", "C+", "paper's C"};
+  for (const Number& metric : session::kMetrics) {
+    std::vector<Cell> row{metric.title};
+    for (const char* label : kCancelling) {
+      row.emplace_back(percent(restored(conditions, label, metric)));
+    }
+    row.emplace_back(number(metric.paper->restored_percent, 0) + " %");
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
 
 report::Table treatment_table(const ConvertedModel& control, bool used) {
   report::Table table;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/libraries/session/in_process.hpp"
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/cancellation/parts/adaptive_gain.hpp"
@@ -15,15 +16,12 @@ namespace stillhand::close_the_loop {
 /// [Hz] Gain and phase adapt within seconds: ten values a second show their course.
 inline constexpr double kWeightRate_hz = 10.0;
 
-/// One trial as it was measured.
-struct TrialRun {
+/// One trial as it was measured.  Its numbers are those of a tracking trial; forces, share and
+/// delay are by the rig's truth.
+struct TrialRun : session::TrialNumbers {
   std::string label;        ///< "I", "A", "B", "C", "C'", "C+"
   std::int64_t number = 0;  ///< of the trial in its session
   recording::Recording measured;
-  identification::TrackingMetrics metrics;  ///< of a tracking trial
-  double cancelled_share = 0.0;             ///< of the feedthrough force, by the rig's truth
-  double counterforce_delay_s = 0.0;        ///< [s] of the motor's force behind it, the same
-  session::TrialForces forces;              ///< the same
   std::vector<cancellation::AdaptiveGain::Pair>
       weights;  ///< w_0, w_1 as adapted, at kWeightRate_hz
 };

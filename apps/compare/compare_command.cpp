@@ -32,7 +32,7 @@ void run_compare(const CompareOptions& options) {
     throw ConfigError(options.folders.front().string(), "no condition besides A and B",
                       "a study or session with a condition to compare");
   }
-  std::cout << table_text(all);
+  std::cout << report::in_plain_text(options_table(all));
   for (const std::string& finding : findings(all)) std::cout << finding << '\n';
   if (options.out.empty()) return;
   report::StagedFolder folder(options.out);

@@ -33,7 +33,7 @@ report::Colour colour_of(const std::string& name) {
 // One panel: the share that each option restores, with its interval.
 report::Panel restored_panel(const Comparison& all, std::size_t m) {
   report::Panel panel;
-  panel.title = kMetrics[m].words;
+  panel.title = kMetrics[m].judged;
   panel.y.label = "restored share [%]";
   panel.x.low = 0.5;
   panel.x.high = static_cast<double>(all.options.size()) + 0.5;
@@ -79,10 +79,10 @@ report::Figure figure_of(const Comparison& all) {
 
 // A and B of every side: what the options are judged by.
 report::Table conditions_table(const Comparison& all, std::size_t m) {
-  const Metric& metric = kMetrics[m];
+  const Number& metric = kMetrics[m];
   report::Table table;
-  table.caption = fmt::format("{}{}: mean with its 95 % interval", metric.words,
-                              *metric.unit == 0 ? "" : fmt::format(" [{}]", metric.unit));
+  table.caption = fmt::format("{}{}: mean with its 95 % interval", metric.judged,
+                              metric.unit() == "-" ? "" : fmt::format(" [{}]", metric.unit()));
   table.header = {"option",       "people",           "mean",
                   "restored [%]", "worse off than B", "gain of the worst person"};
   for (const Side& side : all.sides) {
@@ -136,7 +136,7 @@ report::Table contrasts_table(const Comparison& all) {
   for (std::size_t m = 0; m < kMetrics.size(); ++m) {
     for (const Contrast& contrast : all.rankings[m].contrasts) {
       table.rows.push_back(
-          {kMetrics[m].words, name_of(all, *all.rankings[m].best), name_of(all, contrast.other),
+          {kMetrics[m].judged, name_of(all, *all.rankings[m].best), name_of(all, contrast.other),
            number(contrast.better_by), fmt::format("{:.3g} to {:.3g}", contrast.low, contrast.high),
            fmt::format("{:.2g}", contrast.p), contrast.same_people ? "the same" : "different"});
     }
@@ -155,6 +155,7 @@ void write_report(const Comparison& all, const std::filesystem::path& folder) {
   page.facts({{"made by", report::made_by()}, {"command", report::command_line()}});
   page.list(findings(all));
   page.figure(drawings.front());
+  page.table(options_table(all));
   for (std::size_t m = 0; m < kMetrics.size(); ++m) page.table(conditions_table(all, m));
   page.section("How sure");
   page.paragraph(

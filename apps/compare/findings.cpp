@@ -14,9 +14,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string with_unit(double value, const Metric& metric) {
-  return *metric.unit == 0 ? fmt::format("{:.3g}", value)
-                           : fmt::format("{:.3g} {}", value, metric.unit);
+std::string with_unit(double value, const Number& metric) {
+  return metric.unit() == "-" ? fmt::format("{:.3g}", value)
+                              : fmt::format("{:.3g} {}", value, metric.unit());
 }
 
 std::string p_text(double p) { return p < 1e-3 ? "p < 0.001" : fmt::format("p = {:.2g}", p); }
@@ -29,10 +29,10 @@ std::string people_text(std::size_t count) {
 
 // What the best option does, and to whom.
 std::string best_sentence(const Comparison& all, std::size_t m, std::size_t best) {
-  const Metric& metric = kMetrics[m];
+  const Number& metric = kMetrics[m];
   const Outcome& outcome = all.options[best].outcomes[m];
   std::string text =
-      fmt::format("For the {}, {} is the best on average ({}, {})", metric.words,
+      fmt::format("For the {}, {} is the best on average ({}, {})", metric.judged,
                   name_of(all, best), with_unit(outcome.mean, metric), people_text(outcome.people));
   if (outcome.restored.share)
     text += fmt::format("; it restores {} %", percent(*outcome.restored.share));
@@ -79,14 +79,11 @@ ordered_json outcome_json(const Outcome& outcome) {
   ordered_json out;
   out["people"] = outcome.people;
   out["mean"] = outcome.people > 0 ? ordered_json(outcome.mean) : ordered_json(nullptr);
-  out["ci95"] = outcome.interval ? ordered_json{outcome.interval->low, outcome.interval->high}
-                                 : ordered_json(nullptr);
+  out["ci95"] = or_null(outcome.interval);
   out["restored"] = or_null(outcome.restored.share);
-  out["restored_ci95"] = outcome.restored.interval ? ordered_json{outcome.restored.interval->low,
-                                                                  outcome.restored.interval->high}
-                                                   : ordered_json(nullptr);
+  out["restored_ci95"] = or_null(outcome.restored.interval);
   out["compared"] = outcome.compared;
-  out["harmed"] = outcome.harmed ? ordered_json(*outcome.harmed) : ordered_json(nullptr);
+  out["harmed"] = or_null(outcome.harmed);
   out["least_gain"] = or_null(outcome.least_gain);
   return out;
 }
@@ -126,21 +123,21 @@ std::vector<std::string> findings(const Comparison& all) {
   return out;
 }
 
-std::string table_text(const Comparison& all) {
-  std::string text = fmt::format("{:<28}", "");
-  for (const Metric& metric : kMetrics) text += fmt::format("{:>30}", metric.words);
-  text += '\n';
+report::Table options_table(const Comparison& all) {
+  report::Table table{"Mean of each option, and how much of the loss through motion it restores",
+                      {"option"}};
+  for (const Number& metric : kMetrics) table.header.emplace_back(metric.judged);
   for (std::size_t i = 0; i < all.options.size(); ++i) {
-    text += fmt::format("{:<28}", name_of(all, i));
+    std::vector<report::Cell> row{name_of(all, i)};
     for (std::size_t m = 0; m < kMetrics.size(); ++m) {
       const Outcome& outcome = all.options[i].outcomes[m];
-      std::string cell = outcome.people == 0 ? "-" : with_unit(outcome.mean, kMetrics[m]);
+      std::string cell = outcome.people == 0 ? "–" : with_unit(outcome.mean, kMetrics[m]);
       if (outcome.restored.share) cell += fmt::format(" ({} %)", percent(*outcome.restored.share));
-      text += fmt::format("{:>30}", cell);
+      row.emplace_back(cell);
     }
-    text += '\n';
+    table.rows.push_back(row);
   }
-  return text;
+  return table;
 }
 
 std::string comparison_json(const Comparison& all) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/compare/core/comparison.hpp"
+#include "apps/libraries/report/page.hpp"
 
 namespace stillhand::compare {
 
@@ -17,8 +18,8 @@ std::string name_of(const Comparison& all, std::size_t option);
 /// What to use, for whom, and how sure that is: a sentence or two for each metric.
 std::vector<std::string> findings(const Comparison& all);
 
-/// A row for each option, for the terminal.
-std::string table_text(const Comparison& all);
+/// A row for each option.
+report::Table options_table(const Comparison& all);
 
 /// comparison.json.
 std::string comparison_json(const Comparison& all);

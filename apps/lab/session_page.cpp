@@ -11,59 +11,37 @@
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
-#include "apps/libraries/session/paper_table.hpp"
+#include "apps/libraries/session/core/trial_numbers.hpp"
 
 namespace stillhand::lab {
 namespace {
 
-constexpr const char* kNone = "-";
-
-std::string number(std::optional<double> value) {
-  return value && std::isfinite(*value) ? fmt::format("{:.2f}", *value) : kNone;
-}
+using report::number;
 
 std::string restored(std::optional<double> share) {
-  return share && std::isfinite(*share) ? report::restored(*share) : kNone;
+  return share && std::isfinite(*share) ? report::restored(*share) : "–";
 }
 
 std::vector<report::Cell> own_row(const session::SessionResult& result,
-                                  const session::Metric& metric) {
-  std::vector<report::Cell> row{std::string(metric.title) + ", this session"};
+                                  const session::Number& shown) {
+  std::vector<report::Cell> row{std::string(shown.title) + ", this session"};
   for (const auto label : session::kPaperConditions) {
     const session::TrialResult* trial = trial_of(result, label);
     const bool disturbed = std::ranges::any_of(
         result.disturbances, [&](const auto& each) { return each.label == label; });
-    row.emplace_back(number(trial ? std::optional(value_of(*trial, metric)) : std::nullopt) +
-                         (disturbed ? " *" : ""),
-                     report::Emphasis::kStrong);
+    row.emplace_back(
+        number(trial ? shown.of(*trial) : NAN, shown.decimals + 1) + (disturbed ? " *" : ""),
+        report::Emphasis::kStrong);
   }
-  row.emplace_back(restored(restoration_of(result, metric)), report::Emphasis::kStrong);
+  row.emplace_back(restored(restoration_of(result, shown)), report::Emphasis::kStrong);
   return row;
 }
 
-std::vector<report::Cell> paper_row(const session::Metric& metric) {
+std::vector<report::Cell> paper_row(const session::Paper& paper) {
   std::vector<report::Cell> row{"paper, mean of 12"};
-  for (const double mean : metric.paper_means()) row.emplace_back(number(mean));
-  row.emplace_back(fmt::format("{:.0f} %", metric.paper_restored_percent));
+  for (const double mean : paper.means()) row.emplace_back(number(mean, 2));
+  row.emplace_back(fmt::format("{:.0f} %", paper.restored_percent));
   return row;
-}
-
-void add_mitigations(const session::SessionResult& result, report::Page& page) {
-  std::vector<const session::TrialResult*> trials = mitigated_trials(result);
-  if (trials.empty()) return;
-  if (const session::TrialResult* c = trial_of(result, session::Condition::kC))
-    trials.insert(trials.begin(), c);
-  report::Table table{
-      "Every mitigation, judged by the error after the first third of its trial, as in the study's "
-      "table of mitigations.",
-      {"", "RMS error [mm]", "restored (B - it)/(B - A)", "motor [N]", "hand [N]"}};
-  for (const session::TrialResult* trial : trials) {
-    table.rows.push_back({session::name_of(trial->label), number(trial->settled_rms_error_mm),
-                          restored(settled_restoration_of(result, trial->label)),
-                          number(trial->forces.motor_n), number(trial->forces.volitional_n)});
-  }
-  page.section("Mitigations");
-  page.table(table);
 }
 
 void add_budgets(const session::SessionResult& result, report::Page& page) {
@@ -92,6 +70,34 @@ void add_budgets(const session::SessionResult& result, report::Page& page) {
 
 }  // namespace
 
+report::Table metrics_table(const session::SessionResult& result) {
+  report::Table table{
+      "This session and the paper (Gillespie and Sövényi, Tables I and II), whose RMS error has no "
+      "unit: 5.5 mm are taken for one. One trial of a condition has no interval.",
+      {"", "A", "B", "C", "restored (B - C)/(B - A)"}};
+  for (const session::Number& shown : session::samples()) {
+    table.rows.push_back(own_row(result, shown));
+    if (shown.paper != nullptr) table.rows.push_back(paper_row(*shown.paper));
+  }
+  return table;
+}
+
+report::Table mitigations_table(const session::SessionResult& result) {
+  std::vector<const session::TrialResult*> trials = mitigated_trials(result);
+  if (const session::TrialResult* c = trial_of(result, session::Condition::kC))
+    trials.insert(trials.begin(), c);
+  report::Table table{
+      "Every mitigation, judged by the error after the first third of its trial, as in the study's "
+      "table of mitigations.",
+      {"", "RMS error [mm]", "restored (B - it)/(B - A)", "motor [N]", "hand [N]"}};
+  for (const session::TrialResult* trial : trials) {
+    table.rows.push_back({session::name_of(trial->label), number(trial->settled_rms_error_mm, 1),
+                          restored(settled_restoration_of(result, trial->label)),
+                          number(trial->forces.motor_n, 2), number(trial->forces.volitional_n, 2)});
+  }
+  return table;
+}
+
 report::Page session_page(const LabOptions& options, const session::SessionResult& result,
                           const std::vector<report::Drawing>& drawings) {
   report::Page page("One session",
@@ -104,19 +110,14 @@ report::Page session_page(const LabOptions& options, const session::SessionResul
               {"command line", report::command_line()}});
   if (!result.rig_parts.empty()) page.paragraph("The " + result.rig_parts + ".");
   page.section("Tracking metrics");
-  report::Table table{"This session and the paper (Gillespie and Sövényi, Tables I and II).",
-                      {"", "A", "B", "C", "restored (B - C)/(B - A)"}};
-  for (const session::Metric& metric : session::kMetrics) {
-    table.rows.push_back(own_row(result, metric));
-    table.rows.push_back(paper_row(metric));
-  }
-  page.table(table);
-  page.paragraph(
-      "The paper's RMS error has no unit; this page takes 5.5 mm for a unit. One trial of a "
-      "condition has no interval, and another session gives other numbers.");
+  page.table(metrics_table(result));
+  page.paragraph("Another session gives other numbers.");
   for (const std::string& line : disturbance_lines(result)) page.paragraph("* " + line + ".");
   add_budgets(result, page);
-  add_mitigations(result, page);
+  if (!mitigated_trials(result).empty()) {
+    page.section("Mitigations");
+    page.table(mitigations_table(result));
+  }
   if (drawings.empty()) return page;
   page.section("Traces");
   for (const report::Drawing& drawing : drawings) page.figure(drawing);

@@ -11,6 +11,10 @@ namespace stillhand::lab {
 
 inline constexpr const char* kSessionPage = "session.html";
 
+/// The figures of each condition next to the paper's; and every mitigation, with C.
+report::Table metrics_table(const session::SessionResult& result);
+report::Table mitigations_table(const session::SessionResult& result);
+
 /// One page for the person who tracked: the three figures of each condition next to the paper's,
 /// and the traces.  It needs no other file.
 /// @param drawings  of draw_session()

@@ -21,55 +21,15 @@
 namespace stillhand::lab {
 namespace {
 
-void print_table(const session::SessionResult& result) {
+void print_tables(const session::SessionResult& result) {
   if (trial_of(result, session::Condition::kP) != nullptr) {
     std::printf("`stillhand identify session.mcap --admittance` reads the perturbed trial\n");
     return;
   }
-  std::printf("\n%-22s %9s %9s %9s   %s\n", "", "A", "B", "C",
-              "restored, and the paper's 12 subjects: A, B, C, restored");
-  for (const session::Metric& metric : session::kMetrics) {
-    std::printf("%-22s", metric.title);
-    for (const auto label : session::kPaperConditions) {
-      const session::TrialResult* trial = trial_of(result, label);
-      if (trial == nullptr) {
-        std::printf(" %9s", "-");
-      } else {
-        std::printf(" %9.3f", value_of(*trial, metric));
-      }
-    }
-    const std::optional<double> restored = restoration_of(result, metric);
-    if (restored && std::isfinite(*restored)) {
-      std::printf("   %s", report::restored(*restored).c_str());
-    } else {
-      std::printf("   -");
-    }
-    const auto paper = metric.paper_means();
-    std::printf("   paper: %.2f, %.2f, %.2f, %.0f %%\n", paper[0], paper[1], paper[2],
-                metric.paper_restored_percent);
-  }
-  std::printf(
-      "The paper's RMS error has no unit: one is taken for 5.5 mm. One trial of each condition has "
-      "no interval;\n`stillhand close-the-loop --repeats` measures it.\n");
-}
-
-void print_mitigations(const session::SessionResult& result) {
-  std::vector<const session::TrialResult*> trials = mitigated_trials(result);
-  if (trials.empty()) return;
-  if (const session::TrialResult* c = trial_of(result, session::Condition::kC))
-    trials.insert(trials.begin(), c);
-  std::printf("\n%-16s %14s %9s %9s %9s\n", "mitigation", "RMS error [mm]", "restored", "motor [N]",
-              "hand [N]");
-  for (const session::TrialResult* trial : trials) {
-    const std::optional<double> restored = settled_restoration_of(result, trial->label);
-    std::printf("%-16s %14.1f %9s %9.1f %9.1f\n", session::name_of(trial->label),
-                trial->settled_rms_error_mm,
-                restored && std::isfinite(*restored)
-                    ? fmt::format("{:.0f} %", 100.0 * *restored).c_str()
-                    : "-",
-                trial->forces.motor_n, trial->forces.volitional_n);
-  }
-  std::printf("restored: (B - X)/(B - A) of the RMS error after the first third of each trial\n");
+  std::printf("\n%s`stillhand close-the-loop --repeats` measures an interval.\n",
+              report::in_plain_text(metrics_table(result)).c_str());
+  if (mitigated_trials(result).empty()) return;
+  std::printf("\n%s", report::in_plain_text(mitigations_table(result)).c_str());
 }
 
 void print_disturbances(const session::SessionResult& result) {
@@ -104,9 +64,9 @@ void print_models(const session::SessionResult& result,
   }
   if (!control_model.empty()) std::printf("C ran %s instead\n", control_model.c_str());
   for (const session::TrialResult& trial : result.trials) {
-    if (trial.label == session::Condition::kC && trial.cancelled_share) {
+    if (trial.label == session::Condition::kC && std::isfinite(trial.cancelled_share)) {
       std::printf("feedthrough force cancelled while tracking: %.1f %%\n",
-                  100.0 * *trial.cancelled_share);
+                  100.0 * trial.cancelled_share);
     }
     if (trial.sensed_share) {
       std::printf(
@@ -194,8 +154,7 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   write(options.out / "summary.json",
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
   draw(options, result);
-  print_table(result);
-  print_mitigations(result);
+  print_tables(result);
   print_disturbances(result);
   print_budgets(result);
   print_rig(options);

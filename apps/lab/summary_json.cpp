@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/session/misses_json.hpp"
-#include "apps/libraries/session/paper_table.hpp"
+#include "apps/libraries/session/numbers_json.hpp"
 #include "services/core/device_rig/parts.hpp"
 #include "services/core/vehicle/vehicle_settings.hpp"
 #include "services/files/settings/load.hpp"
@@ -23,21 +24,20 @@ using report::or_null;
 // The study's shape with one subject: a standard deviation needs two.
 ordered_json condition_json(const session::TrialResult& trial) {
   ordered_json condition;
-  for (const session::Metric& metric : session::kMetrics) {
-    const double value = value_of(trial, metric);
-    condition[metric.key] = {{"mean", or_null(value)},
-                             {"std", nullptr},
-                             {"per_subject", ordered_json::array({or_null(value)})}};
+  for (const session::Number& number : session::numbers(session::kLab)) {
+    const double value = number.of(trial);
+    if (number.shape == session::Shape::kSample) {
+      condition[number.key] = {{"mean", or_null(value)},
+                               {"std", nullptr},
+                               {"per_subject", ordered_json::array({or_null(value)})}};
+    } else if (std::isfinite(value) || number.still != session::Still::kLeftOut) {
+      condition[number.key] = or_null(value);
+    }
   }
-  condition["crossover_reference_hz"] = or_null(trial.metrics.crossover_reference_hz);
-  condition["cancelled_share"] = or_null(trial.cancelled_share);
   if (trial.sensed_share) {
     condition["cancelled_share_sensed"] = {
         {"mean", trial.sensed_share->share},
         {"interval95", {trial.sensed_share->low, trial.sensed_share->high}}};
-  }
-  if (trial.counterforce_delay_s) {
-    condition["counterforce_delay_ms"] = or_null(1e3 * *trial.counterforce_delay_s);
   }
   const auto put_latency = [&condition](const char* key, const auto& latency) {
     if (!latency) return;
@@ -89,16 +89,10 @@ ordered_json lateness_json(const session::SessionResult& result, std::int64_t nu
   return json;
 }
 
-ordered_json restoration_json(const session::SessionResult& result) {
-  ordered_json restoration;
-  for (const session::Metric& metric : session::kMetrics) {
-    restoration[metric.restoration_key] = or_null(restoration_of(result, metric));
-  }
-  return restoration;
-}
-
-ordered_json number_json(const std::optional<std::int32_t>& number) {
-  return number ? ordered_json(*number) : ordered_json(nullptr);
+ordered_json restoration_json(const session::SessionResult& result, session::Condition label) {
+  return session::of_each_metric(&session::Number::name, [&](std::size_t k) {
+    return or_null(restoration_of(result, session::kMetrics[k], label));
+  });
 }
 
 // Every condition with motion but B, C and the mitigations, as the study's table has them.
@@ -110,17 +104,14 @@ ordered_json mitigations_json(const session::SessionResult& result) {
   ordered_json json = ordered_json::object();
   for (const session::TrialResult* trial : shown) {
     ordered_json& one = json[session::name_of(trial->label)];
-    one = {{"restored", or_null(settled_restoration_of(result, trial->label))},
-           {"settled_rms_error_mm", or_null(trial->settled_rms_error_mm)},
-           {"motor_n", or_null(trial->forces.motor_n)},
-           {"volitional_n", or_null(trial->forces.volitional_n)},
-           {"models",
-            {{"force", number_json(trial->models.force)},
-             {"position", number_json(trial->models.position)}}}};
-    for (const session::Metric& metric : session::kMetrics) {
-      one["restoration"][metric.restoration_key] =
-          or_null(restoration_of(result, metric, trial->label));
-    }
+    one = {
+        {"restored", or_null(settled_restoration_of(result, trial->label))},
+        {"settled_rms_error_mm", or_null(trial->settled_rms_error_mm)},
+        {"motor_n", or_null(trial->forces.motor_n)},
+        {"volitional_n", or_null(trial->forces.volitional_n)},
+        {"models",
+         {{"force", or_null(trial->models.force)}, {"position", or_null(trial->models.position)}}},
+        {"restoration", restoration_json(result, trial->label)}};
   }
   return json;
 }
@@ -215,6 +206,16 @@ ordered_json identification_json(const session::SessionResult& result) {
   return json;
 }
 
+// (B - X)/(B - A) of a value of a trial.
+std::optional<double> restored(const session::SessionResult& result, session::Condition label,
+                               auto value) {
+  const session::TrialResult* a = trial_of(result, session::Condition::kA);
+  const session::TrialResult* b = trial_of(result, session::Condition::kB);
+  const session::TrialResult* x = trial_of(result, label);
+  if (a == nullptr || b == nullptr || x == nullptr) return std::nullopt;
+  return (value(*b) - value(*x)) / (value(*b) - value(*a));
+}
+
 }  // namespace
 
 bool simulated_subject(const LabOptions& options) {
@@ -231,18 +232,10 @@ const session::TrialResult* trial_of(const session::SessionResult& result,
   return trial == result.trials.end() ? nullptr : &*trial;
 }
 
-double value_of(const session::TrialResult& trial, const session::Metric& metric) {
-  return metric.of(trial.metrics);
-}
-
 std::optional<double> restoration_of(const session::SessionResult& result,
-                                     const session::Metric& metric, session::Condition label) {
-  const session::TrialResult* a = trial_of(result, session::Condition::kA);
-  const session::TrialResult* b = trial_of(result, session::Condition::kB);
-  const session::TrialResult* c = trial_of(result, label);
-  if (a == nullptr || b == nullptr || c == nullptr) return std::nullopt;
-  return (value_of(*b, metric) - value_of(*c, metric)) /
-         (value_of(*b, metric) - value_of(*a, metric));
+                                     const session::Number& number, session::Condition label) {
+  return restored(result, label,
+                  [&](const session::TrialResult& trial) { return number.of(trial); });
 }
 
 std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result) {
@@ -256,12 +249,7 @@ std::vector<const session::TrialResult*> mitigated_trials(const session::Session
 
 std::optional<double> settled_restoration_of(const session::SessionResult& result,
                                              session::Condition label) {
-  const session::TrialResult* a = trial_of(result, session::Condition::kA);
-  const session::TrialResult* b = trial_of(result, session::Condition::kB);
-  const session::TrialResult* c = trial_of(result, label);
-  if (a == nullptr || b == nullptr || c == nullptr) return std::nullopt;
-  return (b->settled_rms_error_mm - c->settled_rms_error_mm) /
-         (b->settled_rms_error_mm - a->settled_rms_error_mm);
+  return restored(result, label, std::mem_fn(&session::TrialResult::settled_rms_error_mm));
 }
 
 std::vector<std::string> disturbance_lines(const session::SessionResult& result) {
@@ -300,7 +288,7 @@ ordered_json summary_json(const LabOptions& options,
   // Tests over subjects need subjects; a lab session has one.
   summary["t_tests"] = nullptr;
   summary["manova"] = nullptr;
-  summary["restoration"] = restoration_json(result);
+  summary["restoration"] = restoration_json(result, session::Condition::kC);
   if (const ordered_json mitigations = mitigations_json(result); !mitigations.empty()) {
     summary["mitigations"] = mitigations;
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/lab/lab_options.hpp"
-#include "apps/libraries/session/paper_table.hpp"
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/libraries/session/results.hpp"
 #include "apps/libraries/session/trial_outcome.hpp"
 
@@ -18,11 +18,10 @@ bool simulated_subject(const LabOptions& options);
 /// The trial of a condition; nullptr: none was completed.
 const session::TrialResult* trial_of(const session::SessionResult& result,
                                      session::Condition label);
-double value_of(const session::TrialResult& trial, const session::Metric& metric);
-/// (B - C) / (B - A) of a metric; nothing without all three conditions.
+/// (B - C) / (B - A) of a number; nothing without all three conditions.
 /// @param label  of the condition in the place of C
 std::optional<double> restoration_of(const session::SessionResult& result,
-                                     const session::Metric& metric,
+                                     const session::Number& number,
                                      session::Condition label = session::Condition::kC);
 /// The same of the RMS error behind each trial's first third: the study's share (SU-19).
 std::optional<double> settled_restoration_of(const session::SessionResult& result,

@@ -119,7 +119,7 @@ void add_wrong_models(Analysis& analysis, const std::vector<SubjectResult>& resu
     WrongModel& wrong = analysis.wrong[which];
     for (std::size_t k = 0; k < kMetricCount; ++k) {
       wrong.metrics[k] = summarised(over_subjects(results, [&](const SubjectResult& result) {
-        return kMetrics[k].of(result.wrong.at(which).metrics);
+        return kMetrics[k].of(result.wrong.at(which));
       }));
     }
     wrong.surviving_share = over_subjects(results, [&](const SubjectResult& result) {
@@ -201,6 +201,12 @@ void add_comparisons(Analysis& analysis) {
 
 }  // namespace
 
+bool gives(Condition condition, const session::Number& number) {
+  return (number.in & session::kStudy) != 0 &&
+         (number.still == session::Still::kGiven ||
+          std::ranges::find(kCancelling, condition) != kCancelling.end());
+}
+
 std::string words_of_conditions(const Analysis& analysis) {
   std::string out;
   for (const Condition condition : conditions_in(analysis)) {
@@ -213,28 +219,13 @@ Analysis analyse(const std::vector<SubjectResult>& results) {
   Analysis out;
   for (const auto& entry : results.front().trials) {
     const Condition condition = entry.first;
-    for (std::size_t k = 0; k < kMetricCount; ++k) {
+    for (std::size_t k = 0; k < session::kNumbers.size(); ++k) {
       out.conditions[condition][k] =
           summarised(over_subjects(results, [&](const SubjectResult& result) {
-            return kMetrics[k].of(result.trials.at(condition).metrics);
+            return session::kNumbers[k].of(result.trials.at(condition));
           }));
     }
-    out.crossover_reference_hz[condition] =
-        summarised(over_subjects(results, [&](const SubjectResult& result) {
-          return result.trials.at(condition).metrics.crossover_reference_hz;
-        }));
     out.open_loop[condition] = pooled_lines(results, condition);
-  }
-  for (const Condition condition : kCancelling) {
-    if (!has(out, condition)) continue;
-    out.cancelled_share[condition] =
-        summarised(over_subjects(results, [condition](const SubjectResult& r) {
-          return r.trials.at(condition).cancelled_share;
-        }));
-    out.counterforce_delay_s[condition] =
-        summarised(over_subjects(results, [condition](const SubjectResult& r) {
-          return r.trials.at(condition).counterforce_delay_s;
-        }));
   }
   for (const Condition condition : conditions_in(out)) {
     if (!cancels(condition) && !is_mitigation(condition)) continue;

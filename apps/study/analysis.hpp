@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/libraries/session/paper_table.hpp"
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/study/conditions.hpp"
 #include "apps/study/subject_session.hpp"
 #include "services/core/statistics/descriptive.hpp"
@@ -20,7 +20,7 @@ namespace stillhand::study {
 inline constexpr std::size_t kMetricCount = session::kMetrics.size();
 using session::kPaperUnit_mm;
 
-/// One metric under one condition.
+/// One number under one condition.
 struct MetricSample {
   std::vector<double> per_subject;
   double mean = 0.0;
@@ -61,13 +61,12 @@ struct WrongModel {
 
 /// Eq. SU-5, of each metric.
 using Restoration = std::array<statistics::RestoredShare, kMetricCount>;
+/// Of session::kNumbers; the metrics come first.
+using Samples = std::array<MetricSample, session::kNumbers.size()>;
 
 /// All numbers of the report and the summary.
 struct Analysis {
-  std::map<Condition, std::array<MetricSample, kMetricCount>> conditions;
-  std::map<Condition, MetricSample> cancelled_share;       ///< conditions with a motor
-  std::map<Condition, MetricSample> counterforce_delay_s;  ///< conditions with a motor
-  std::map<Condition, MetricSample> crossover_reference_hz;
+  std::map<Condition, Samples> conditions;
   std::map<Condition, std::vector<PooledLine>> open_loop;
   std::vector<Comparison> comparisons;
   MultivariateResult main_effects;  ///< A, B, C with one value a cell: no interaction
@@ -80,6 +79,9 @@ struct Analysis {
   std::map<char, WrongModel> wrong;
   std::int64_t refined_used = 0;  ///< subjects whose paper's fit could not cancel
 };
+
+/// Whether a study's summary gives a number under a condition: some are of the motor alone.
+bool gives(Condition condition, const session::Number& number);
 
 /// Mean, deviation and box of the finite values: a crossover may not be found.  The mean is NaN if
 /// no value is finite.

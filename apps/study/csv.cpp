@@ -17,18 +17,28 @@ std::string subject_key(const StudyRecord& record, std::size_t index) {
   return record.recorded ? quoted(record.recorded->participants[index]) : std::to_string(index + 1);
 }
 
+// Headers of numbers of the table, each after a comma, and their cells of a trial.
+std::string headers(auto numbers) {
+  std::string out;
+  for (const session::Number& each : numbers) out += std::string(",") + each.header();
+  return out;
+}
+std::string cells(auto numbers, const session::TrialNumbers& trial) {
+  std::string out;
+  for (const session::Number& each : numbers) out += "," + text(each.of(trial));
+  return out;
+}
+
 CsvFile metrics_file(const StudyRecord& record) {
-  std::string out =
-      "subject,condition,place in order,rms error [mm],dwell ratio [-],crossover [Hz],"
-      "crossover through reference [Hz],cancelled share [-],feedthrough rms [N]\n";
+  std::string out = "subject,condition,place in order" + headers(session::numbers(session::kCsv)) +
+                    ",feedthrough rms [N]\n";
   for (std::size_t i = 0; i < record.results.size(); ++i) {
     const std::vector<Condition>& order = record.results[i].order;
     for (const auto& [condition, trial] : record.results[i].trials) {
       const auto place = std::ranges::find(order, condition) - order.begin() + 1;
-      out += row({subject_key(record, i), name_of(condition), std::to_string(place),
-                  text(trial.metrics.rms_error_mm), text(trial.metrics.dwell_ratio),
-                  text(trial.metrics.crossover_hz), text(trial.metrics.crossover_reference_hz),
-                  text(trial.cancelled_share), text(trial.feedthrough_rms_n)});
+      out += row({subject_key(record, i), name_of(condition),
+                  std::to_string(place) + cells(session::numbers(session::kCsv), trial),
+                  text(trial.feedthrough_rms_n)});
     }
   }
   return {"metrics.csv", out};
@@ -111,16 +121,13 @@ std::string planned_number(std::int64_t number) {
 }
 
 CsvFile trials_file(const RecordedSource& source) {
-  std::string out =
-      "participant,session,trial,place,condition,rms error [mm],dwell ratio [-],crossover [Hz],"
-      "crossover through reference [Hz],cancelled share [-],lost share [-],block,place in plan,"
-      "in tables\n";
+  std::string out = "participant,session,trial,place,condition" +
+                    headers(session::numbers(session::kCsv)) +
+                    ",lost share [-],block,place in plan,in tables\n";
   for (const RecordedTrial& trial : source.trials) {
-    const auto& metrics = trial.tracked.metrics;
     out += row({quoted(trial.participant), quoted(trial.session), std::to_string(trial.number),
-                std::to_string(trial.place), name_of(trial.condition), text(metrics.rms_error_mm),
-                text(metrics.dwell_ratio), text(metrics.crossover_hz),
-                text(metrics.crossover_reference_hz), text(trial.tracked.cancelled_share),
+                std::to_string(trial.place),
+                name_of(trial.condition) + cells(session::numbers(session::kCsv), trial.tracked),
                 text(trial.lost_share), planned_number(trial.block), planned_number(trial.step),
                 source.used.contains(id_of(trial)) ? "1" : "0"});
   }
@@ -129,13 +136,11 @@ CsvFile trials_file(const RecordedSource& source) {
 
 // The same metrics of the simulated subjects, in their order.
 CsvFile simulated_file(const SimulatedSide& simulated) {
-  std::string out = "subject,condition,rms error [mm],dwell ratio [-],crossover [Hz]\n";
+  std::string out = "subject,condition" + headers(session::samples()) + "\n";
   for (std::size_t i = 0; i < simulated.results.size(); ++i) {
     for (const auto& [condition, trial] : simulated.results[i].trials) {
-      const auto& metrics = trial.metrics;
       out += row({simulated.same_people ? quoted(simulated.participants[i]) : std::to_string(i + 1),
-                  name_of(condition), text(metrics.rms_error_mm), text(metrics.dwell_ratio),
-                  text(metrics.crossover_hz)});
+                  name_of(condition) + cells(session::samples(), trial)});
     }
   }
   return {"simulated.csv", out};

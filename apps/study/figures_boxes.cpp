@@ -20,7 +20,7 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
   constexpr std::array<const char*, kMetricCount> kNames{"fig10_rms_error", "fig11_dwell_ratio",
                                                          "fig13_crossover"};
   constexpr std::array<const char*, kMetricCount> kNumbers{"Fig. 10", "Fig. 11", "Fig. 13"};
-  const session::Metric& what = session::kMetrics[metric];
+  const session::Number& what = session::kMetrics[metric];
   Panel panel;
   panel.y.label = what.title;
   panel.y.low = 0.0;

@@ -43,28 +43,6 @@ void write_participants(const StudyRecord& record, const report::StagedFolder& f
   }
 }
 
-// Of a condition's column: a mitigation's name is the longest.
-std::size_t column_width(Condition condition) {
-  return std::max<std::size_t>(std::string_view(name_of(condition)).size(), 9);
-}
-
-// Means under each condition, restoration, and the paper's values.
-void print_metric(const Analysis& analysis, std::size_t k) {
-  const session::Metric& metric = session::kMetrics[k];
-  fmt::print("{:<22}", metric.title);
-  for (const auto& [condition, metrics] : analysis.conditions) {
-    fmt::print(" {:{}.3f}", metrics[k].mean, column_width(condition));
-  }
-  fmt::print("   {:>27}", restored_text(analysis, k));
-  fmt::print("   {:.2f}, {:.2f}, {:.2f}, {:.0f} %\n", paper_value(k, kA), paper_value(k, kB),
-             paper_value(k, kC), metric.paper_restored_percent);
-  for (const auto& entry : analysis.restoration) {
-    if (entry.first == kC) continue;
-    fmt::print("{:>25} {}\n", std::string("restored by ") + name_of(entry.first),
-               restored_text(analysis, k, entry.first));
-  }
-}
-
 void print_manova(const MultivariateResult& result, const std::string& of) {
   if (!result.manova) return;
   const auto& manova = *result.manova;
@@ -159,12 +137,10 @@ void print_study(const StudyRecord& record) {
   if (record.recorded && subjects_of(record) == Subjects::kSimulated) {
     fmt::print("{}\n", report::kSimulatedBanner);
   }
-  fmt::print("\n{:<22}", "mean of the subjects");
-  for (const auto& entry : analysis.conditions) {
-    fmt::print(" {:>{}}", name_of(entry.first), column_width(entry.first));
+  fmt::print("\n{}", report::in_plain_text(numbers_table(analysis)));
+  if (analysis.restoration.size() > analysis.restoration.count(kC)) {
+    fmt::print("{}", report::in_plain_text(restorations_table(analysis)));
   }
-  fmt::print("   {:>27}   {}\n", "restored [95 %]", "paper: A, B, C, restored");
-  for (std::size_t k = 0; k < kMetricCount; ++k) print_metric(analysis, k);
   fmt::print("The paper's RMS error has no unit; {:.1f} mm a unit is assumed.{}\n", kPaperUnit_mm,
              record.recorded                 ? ""
              : is_calibrated(record.options) ? " A and B are calibrated, C is a prediction."

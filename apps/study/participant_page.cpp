@@ -43,7 +43,7 @@ std::map<Condition, const TrackedTrial*> last_trials(const RecordedSource& sourc
 
 double own_value(const SubjectResult* own, Condition condition, std::size_t metric) {
   if (own == nullptr || !own->trials.contains(condition)) return kNan;
-  return kMetrics[metric].of(own->trials.at(condition).metrics);
+  return kMetrics[metric].of(own->trials.at(condition));
 }
 
 // The person among the others: every participant, the own value, the paper's mean.
@@ -115,7 +115,7 @@ report::Table restored_table(const StudyRecord& record, const SubjectResult* own
           {kMetrics[k].title, name_of(entry.first),
            Cell(std::isfinite(share) ? report::restored(share) : "–", Emphasis::kStrong),
            restored_text(record.analysis, k, entry.first),
-           Cell(entry.first == kC ? number(kMetrics[k].paper_restored_percent, 0) + " %" : "–",
+           Cell(entry.first == kC ? number(kMetrics[k].paper->restored_percent, 0) + " %" : "–",
                 Emphasis::kFaint)});
     }
   }
@@ -127,17 +127,20 @@ report::Table trials_table(const RecordedSource& source, const std::string& code
   table.caption =
       "Every complete tracking trial, in the order of the session. Block and place are those of "
       "the registered plan. Used: the trial is in the tables.";
-  table.header = {"trial",          "session",     "block",    "place",    "condition",
-                  "RMS error [mm]", "dwell ratio", "f_c [Hz]", "lost [%]", "used"};
+  table.header = {"trial", "session", "block", "place", "condition"};
+  for (const session::Number& each : session::samples()) table.header.emplace_back(each.title);
+  table.header.insert(table.header.end(), {"lost [%]", "used"});
   const auto planned = [](std::int64_t n) { return n > 0 ? std::to_string(n) : std::string("–"); };
   for (const RecordedTrial* trial : trials_of(source, code)) {
-    const auto& metrics = trial->tracked.metrics;
     const bool used = source.used.contains(id_of(*trial));
-    table.rows.push_back({std::to_string(trial->number), trial->session, planned(trial->block),
-                          planned(trial->step), name_of(trial->condition),
-                          number(metrics.rms_error_mm, 1), number(metrics.dwell_ratio, 2),
-                          number(metrics.crossover_hz, 2), number(100.0 * trial->lost_share, 1),
-                          Cell(used ? "yes" : "no", used ? Emphasis::kNone : Emphasis::kFaint)});
+    std::vector<Cell> row{std::to_string(trial->number), trial->session, planned(trial->block),
+                          planned(trial->step), name_of(trial->condition)};
+    for (const session::Number& each : session::samples()) {
+      row.emplace_back(number(each.of(trial->tracked), each.decimals));
+    }
+    row.emplace_back(number(100.0 * trial->lost_share, 1));
+    row.emplace_back(used ? "yes" : "no", used ? Emphasis::kNone : Emphasis::kFaint);
+    table.rows.push_back(row);
   }
   table.align.assign(table.header.size(), report::Align::kRight);
   return table;

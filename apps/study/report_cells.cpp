@@ -13,14 +13,14 @@ using report::number;
 using report::short_number;
 using session::kMetrics;
 
-int decimals(std::size_t metric) { return metric == 0 ? 1 : 2; }
+int decimals(std::size_t metric) { return session::kNumbers[metric].decimals; }
 
 bool has_test(const Comparison& comparison) {
   return std::ranges::any_of(comparison.tests, [](const auto& test) { return test.has_value(); });
 }
 
 double paper_value(std::size_t metric, Condition condition) {
-  return kMetrics[metric].paper_means().at(condition == kA ? 0 : condition == kB ? 1 : 2);
+  return kMetrics[metric].paper->means().at(condition == kA ? 0 : condition == kB ? 1 : 2);
 }
 
 // A tail below the range of a double is 0, but no probability is.

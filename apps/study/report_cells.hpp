@@ -9,7 +9,7 @@
 /// Values and texts that several tables of the report share.
 namespace stillhand::study {
 
-/// Digits after the point of a metric, an index of session::kMetrics.
+/// Digits after the point of a number, an index of session::kNumbers.
 int decimals(std::size_t metric);
 
 /// Whether any of its metrics was tested: one subject, or no variance, has no test.

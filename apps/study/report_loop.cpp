@@ -50,17 +50,53 @@ void add_open_loop(report::Page& page, const Analysis& analysis) {
   page.table(table);
 }
 
-void add_crossover(report::Page& page, const Analysis& analysis) {
+report::Table numbers_table(const Analysis& analysis) {
   report::Table table;
   table.caption =
-      "Crossover by the paper's line through eleven points; and through the reference, with the "
-      "remnant's power subtracted (identification, Eq. ID-15).";
-  table.header = {"condition", "paper's line [Hz]", "through the reference [Hz]"};
-  for (const auto& [condition, metrics] : analysis.conditions) {
-    table.rows.push_back({title_of(condition), mean_and_deviation(metrics[2], 2),
-                          mean_and_deviation(analysis.crossover_reference_hz.at(condition), 2)});
+      "Every number, mean ± SD over the subjects; restored: (B − C)/(B − A) of the means, 100 % is "
+      "the value on the stationary platform. The crossover f_c is by the paper's line through "
+      "eleven "
+      "points, that by the reference has the remnant's power subtracted (identification, Eq. "
+      "ID-15).";
+  table.header = {"number"};
+  for (const auto& entry : analysis.conditions) table.header.push_back(title_of(entry.first));
+  table.header.insert(table.header.end(), {"restored by C [95 %]", "paper: A, B, C, restored"});
+  for (std::size_t k = 0; k < session::kNumbers.size(); ++k) {
+    const session::Number& shown = session::kNumbers[k];
+    if ((shown.in & session::kStudy) == 0) continue;
+    std::vector<Cell> row{shown.title};
+    for (const auto& [condition, samples] : analysis.conditions) {
+      row.emplace_back(gives(condition, shown) ? mean_and_deviation(samples[k], k) : "–");
+    }
+    if (k < kMetricCount) {
+      row.emplace_back(restored_text(analysis, k));
+      row.emplace_back(
+          fmt::format("{}, {}, {}, {:.0f} %", number(paper_value(k, kA), decimals(k)),
+                      number(paper_value(k, kB), decimals(k)),
+                      number(paper_value(k, kC), decimals(k)), shown.paper->restored_percent),
+          report::Emphasis::kFaint);
+    }
+    table.rows.push_back(row);
   }
-  page.table(table);
+  return table;
+}
+
+report::Table restorations_table(const Analysis& analysis) {
+  report::Table table;
+  table.caption =
+      "Restoration (B − X)/(B − A) of the means, with its 95 % interval over the participants.";
+  table.header = {"metric"};
+  for (const auto& entry : analysis.restoration) {
+    table.header.push_back(name_of(entry.first));
+  }
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    std::vector<Cell> row{session::kMetrics[k].title};
+    for (const auto& entry : analysis.restoration) {
+      row.emplace_back(restored_text(analysis, k, entry.first));
+    }
+    table.rows.push_back(row);
+  }
+  return table;
 }
 
 namespace {
@@ -82,25 +118,6 @@ report::Table mitigations_table(const Analysis& analysis) {
         {title_of(condition), mean_and_deviation(metrics[0], 0), mean_and_deviation(metrics[1], 1),
          mean_and_deviation(metrics[2], 2), restored,
          test != nullptr && test->tests[0] ? p_value(test->tests[0]->p) : std::string("–")});
-  }
-  return table;
-}
-
-// Restoration of each metric, by each canceller.
-report::Table restorations_table(const Analysis& analysis) {
-  report::Table table;
-  table.caption =
-      "Restoration (B − X)/(B − A) of the means, with its 95 % interval over the participants.";
-  table.header = {"metric"};
-  for (const auto& entry : analysis.restoration) {
-    table.header.push_back(name_of(entry.first));
-  }
-  for (std::size_t k = 0; k < kMetricCount; ++k) {
-    std::vector<Cell> row{session::kMetrics[k].title};
-    for (const auto& entry : analysis.restoration) {
-      row.emplace_back(restored_text(analysis, k, entry.first));
-    }
-    table.rows.push_back(row);
   }
   return table;
 }

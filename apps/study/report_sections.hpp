@@ -26,7 +26,10 @@ report::Figure figure_simulated(const StudyRecord& record);
 std::string chance_sentence(const SimulatedSide& simulated);
 
 // report_loop.cpp
-void add_crossover(report::Page& page, const Analysis& analysis);
+/// Every number under every condition.
+report::Table numbers_table(const Analysis& analysis);
+/// Restoration of each metric, by each canceller.
+report::Table restorations_table(const Analysis& analysis);
 /// Open loop at the lines of the target, Eq. SU-3.
 void add_open_loop(report::Page& page, const Analysis& analysis);
 /// Conditions D, E and F against B.

@@ -45,7 +45,7 @@ report::Table means_table(const StudyRecord& record) {
     table.rows.push_back(
         {std::string(kMetrics[k].title) + ", restored by C", "", restored_text(record.analysis, k),
          restored_text(simulated.analysis, k),
-         Cell(number(kMetrics[k].paper_restored_percent, 0) + " %", Emphasis::kFaint)});
+         Cell(number(kMetrics[k].paper->restored_percent, 0) + " %", Emphasis::kFaint)});
   }
   return table;
 }

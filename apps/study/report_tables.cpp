@@ -20,7 +20,7 @@ using session::kMetrics;
 
 // Tables I and II of the paper: two conditions, their difference, its significance.
 report::Table paper_table(const Analysis& analysis, Condition from, Condition to, const char* title,
-                          double session::Metric::* paper_p) {
+                          double session::Paper::* paper_p) {
   report::Table table;
   table.caption = title;
   table.header = {"metric", name_of(from), name_of(to)};
@@ -46,7 +46,7 @@ report::Table paper_table(const Analysis& analysis, Condition from, Condition to
     row.emplace_back(
         number(paper_value(k, from), decimals(k)) + ", " + number(paper_value(k, to), decimals(k)),
         Emphasis::kFaint);
-    row.emplace_back(short_number(kMetrics[k].*paper_p), Emphasis::kFaint);
+    row.emplace_back(short_number(kMetrics[k].paper->*paper_p), Emphasis::kFaint);
     table.rows.push_back(row);
   }
   return table;
@@ -78,33 +78,19 @@ report::Table calibration_table(const Analysis& analysis, bool is_default) {
     }
   }
   const double ours = analysis.conditions.at(kB)[0].mean / analysis.conditions.at(kA)[0].mean;
-  const double theirs = kMetrics[0].paper_b / kMetrics[0].paper_a;
+  const double theirs = kMetrics[0].paper->b / kMetrics[0].paper->a;
   table.rows.push_back({"RMS error, B / A (no unit needed)", "", number(ours, 2), number(theirs, 2),
                         number(ours / theirs, 2), is_default ? "calibrated" : "–"});
   return table;
 }
 
-report::Table restoration_table(const Analysis& analysis) {
-  report::Table table;
-  table.caption =
-      "Restoration (B − C)/(B − A) of the means, with its 95 % interval over the subjects; 100 % "
-      "is "
-      "the value on the stationary platform.";
-  table.header = {"metric", "study", "paper"};
-  for (std::size_t k = 0; k < kMetricCount; ++k) {
-    table.rows.push_back(
-        {kMetrics[k].title, restored_text(analysis, k),
-         Cell(percent(kMetrics[k].paper_restored_percent / 100.0), Emphasis::kFaint)});
-  }
-  return table;
-}
-
 void add_outcome(report::Page& page, const Analysis& analysis) {
   const double restored = analysis.restoration.at(kC)[0].share.value_or(NAN);
-  const double paper = kMetrics[0].paper_restored_percent / 100.0;
+  const double paper = kMetrics[0].paper->restored_percent / 100.0;
   page.paragraph(fmt::format(
       "The motor cancels {} of the feedthrough force and restores {} of the RMS error. {}",
-      percent(analysis.cancelled_share.at(kC).mean), restored_text(analysis, 0),
+      percent(analysis.conditions.at(kC)[session::index_of("cancelled_share")].mean),
+      restored_text(analysis, 0),
       restored > paper
           ? "That is more than in the paper. Between the pegged trial and tracking, these "
             "subjects differ only in the stiffness of a co-contracted arm. Real subjects "
@@ -144,11 +130,10 @@ void add_paper_tables(report::Page& page, const StudyRecord& record) {
       paper_table(analysis, kA, kB,
                   "Table I: the effect of the motion. Mean ± SD over the subjects; g_z is Hedges' "
                   "corrected effect size of the differences; p is not adjusted for three metrics.",
-                  &session::Metric::paper_p_ab));
+                  &session::Paper::p_ab));
   page.table(paper_table(analysis, kB, kC,
                          "Table II: the effect of cancellation. Columns as in Table I.",
-                         &session::Metric::paper_p_bc));
-  page.table(restoration_table(analysis));
+                         &session::Paper::p_bc));
   if (record.recorded) return;  // what follows explains simulated subjects
   add_outcome(page, analysis);
   page.table(calibration_table(analysis, is_calibrated(record.options)));

@@ -176,10 +176,10 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
   show("fig09");
   show("fig10");
   show("fig11");
+  page.table(numbers_table(analysis));
   page.section("Crossover");
   show("fig12");
   show("fig13");
-  add_crossover(page, analysis);
   add_open_loop(page, analysis);
   add_statistics(page, analysis);
   add_mitigations(page, record);

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/libraries/session/in_process.hpp"
 #include "apps/study/conditions.hpp"
 #include "services/core/identification/arx.hpp"
 #include "services/core/identification/identifier.hpp"
 #include "services/core/identification/output_error.hpp"
 #include "services/core/identification/rate_conversion.hpp"
-#include "services/core/identification/tracking_metrics.hpp"
 #include "services/core/population/population.hpp"
 #include "services/core/signal/spectrum.hpp"
 
@@ -49,13 +49,11 @@ struct Identification {
   std::string paper_unusable;              ///< why the refined model is used; empty: it is not
 };
 
-/// The parts of a tracking trial that the report shows.
-struct TrackedTrial {
-  identification::TrackingMetrics metrics;  ///< moving averages once a second
-  double cancelled_share = 0.0;             ///< of the feedthrough force; 0 without a motor
+/// The parts of a tracking trial that the report shows.  Moving averages once a second; share and
+/// delay are 0 without a motor.
+struct TrackedTrial : session::TrialNumbers {
   double feedthrough_rms_n = 0.0;
-  double counterforce_delay_s = 0.0;  ///< session::counterforce_delay_s(); 0 without a motor
-  std::vector<double> target_m;       ///< 20 s from the middle, 20 Hz
+  std::vector<double> target_m;  ///< 20 s from the middle, 20 Hz
   std::vector<double> cursor_m;
   /// X_p/X_r at the lines, of the mean of several trials (Eq. SU-14); empty: that of the gains.
   std::vector<std::complex<double>> closed_loop;

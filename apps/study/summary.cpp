@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/libraries/report/or_null.hpp"
+#include "apps/libraries/session/numbers_json.hpp"
 #include "apps/study/diagnoses_output.hpp"
 #include "apps/study/output.hpp"
 #include "version.hpp"
@@ -14,6 +15,8 @@ namespace {
 using nlohmann::ordered_json;
 using report::or_null;
 using session::kMetrics;
+using session::Number;
+using session::of_each_metric;
 
 ordered_json sample_json(const MetricSample& sample) {
   ordered_json each = ordered_json::array();
@@ -25,16 +28,11 @@ ordered_json sample_json(const MetricSample& sample) {
 ordered_json conditions_json(const Analysis& analysis) {
   ordered_json out = ordered_json::object();
   for (const auto& [condition, metrics] : analysis.conditions) {
-    ordered_json one;
-    for (std::size_t k = 0; k < kMetricCount; ++k) {
-      one[kMetrics[k].key] = sample_json(metrics[k]);
+    ordered_json& one = out[name_of(condition)];
+    for (std::size_t k = 0; k < metrics.size(); ++k) {
+      const session::Number& number = session::kNumbers[k];
+      if (gives(condition, number)) one[number.key] = sample_json(metrics[k]);
     }
-    one["crossover_reference_hz"] = sample_json(analysis.crossover_reference_hz.at(condition));
-    if (analysis.cancelled_share.contains(condition)) {
-      one["cancelled_share"] = sample_json(analysis.cancelled_share.at(condition));
-      one["counterforce_delay_s"] = sample_json(analysis.counterforce_delay_s.at(condition));
-    }
-    out[name_of(condition)] = one;
   }
   return out;
 }
@@ -46,12 +44,10 @@ std::string name_of(const Comparison& comparison) {
 ordered_json p_values_json(const Analysis& analysis) {
   ordered_json out = ordered_json::object();
   for (const Comparison& comparison : analysis.comparisons) {
-    ordered_json one;
-    for (std::size_t k = 0; k < kMetricCount; ++k) {
+    out[name_of(comparison)] = of_each_metric(&Number::key, [&](std::size_t k) {
       const auto& test = comparison.tests[k];
-      one[kMetrics[k].key] = test ? ordered_json(test->p) : ordered_json(nullptr);
-    }
-    out[name_of(comparison)] = one;
+      return test ? ordered_json(test->p) : ordered_json(nullptr);
+    });
   }
   return out;
 }
@@ -106,21 +102,13 @@ void add_all_conditions(const Analysis& analysis, ordered_json& summary) {
 }
 
 ordered_json restoration_interval_json(const Restoration& restoration) {
-  ordered_json out;
-  for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const auto& interval = restoration[k].interval;
-    out[kMetrics[k].restoration_key] =
-        interval ? ordered_json{interval->low, interval->high} : ordered_json(nullptr);
-  }
-  return out;
+  return of_each_metric(&Number::name,
+                        [&](std::size_t k) { return or_null(restoration[k].interval); });
 }
 
 ordered_json restoration_json(const Restoration& restoration) {
-  ordered_json out;
-  for (std::size_t k = 0; k < kMetricCount; ++k) {
-    out[kMetrics[k].restoration_key] = or_null(restoration[k].share);
-  }
-  return out;
+  return of_each_metric(&Number::name,
+                        [&](std::size_t k) { return or_null(restoration[k].share); });
 }
 
 // By C; null values where it was not run.
@@ -186,11 +174,10 @@ ordered_json standing_json(const experiment::Standing& standing) {
   for (const auto& [code, why] : standing.excluded) out["excluded"][code] = why;
   for (const auto& [code, state] : standing.incomplete) out["incomplete"][code] = state;
   for (const experiment::Entry& entry : standing.openings) {
-    out["unblinded"].push_back(
-        {{"time", entry.time},
-         {"participant", or_null(entry.participant)},
-         {"complete", entry.complete ? ordered_json(*entry.complete) : ordered_json(nullptr)},
-         {"reason", entry.text}});
+    out["unblinded"].push_back({{"time", entry.time},
+                                {"participant", or_null(entry.participant)},
+                                {"complete", or_null(entry.complete)},
+                                {"reason", entry.text}});
   }
   return out;
 }
@@ -240,10 +227,8 @@ ordered_json needed_json(const StudyRecord& record) {
 ordered_json wrong_json(const Analysis& analysis) {
   ordered_json out = ordered_json::object();
   for (const auto& [which, wrong] : analysis.wrong) {
-    ordered_json one;
-    for (std::size_t k = 0; k < kMetricCount; ++k) {
-      one[kMetrics[k].key] = sample_json(wrong.metrics[k]);
-    }
+    ordered_json one =
+        of_each_metric(&Number::key, [&](std::size_t k) { return sample_json(wrong.metrics[k]); });
     one["surviving_share"] = ordered_json::array();
     for (const double share : wrong.surviving_share) one["surviving_share"].push_back(share);
     out[which == 'O' ? "other_subject" : "mean_of_others"] = one;

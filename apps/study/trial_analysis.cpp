@@ -54,6 +54,7 @@ TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial&
   out.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
   thin(out.metrics.moving_rms_mm, record.rate_hz);
   thin(out.metrics.moving_dwell, record.rate_hz);
+  out.cancelled_share = out.counterforce_delay_s = 0.0;
   if (planned.cancellation) {
     out.cancelled_share = session::cancelled_share(signals.feedthrough_n, signals.motor_n);
     out.counterforce_delay_s =

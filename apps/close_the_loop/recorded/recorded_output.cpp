@@ -22,19 +22,19 @@ using report::number;
 using Interval = std::optional<std::pair<double, double>>;
 
 ordered_json level_json(const Level& level) {
-  return {{"rms", level.rms}, {"interval95", interval_json(level.interval95)}};
+  return {{"rms", level.rms}, {"interval95", report::or_null(level.interval95)}};
 }
 
 ordered_json remaining_json(const std::optional<Remaining>& remaining) {
   if (!remaining) return nullptr;
   return {{"left", level_json(remaining->left)},
           {"cut", remaining->cut()},
-          {"cut_interval95", interval_json(remaining->cut_interval95())}};
+          {"cut_interval95", report::or_null(remaining->cut_interval95())}};
 }
 
 // What the effects explain of a record that no fit has seen.
 ordered_json force_json(const Level& level) {
-  return {{"value", level.rms}, {"ci95", interval_json(level.interval95)}};
+  return {{"value", level.rms}, {"ci95", report::or_null(level.interval95)}};
 }
 
 ordered_json judged_json(const Judged& judged) {
@@ -53,28 +53,27 @@ ordered_json decision_json(const Decision& decision) {
   return {{"linear", level_json(decision.step->without)},
           {"augmented", level_json(decision.step->left)},
           {"less", decision.step->cut()},
-          {"less_interval95", interval_json(decision.step->cut_interval95())}};
+          {"less_interval95", report::or_null(decision.step->cut_interval95())}};
 }
 
 // The rows of both tables: what acted, what is left, what share it took away.
-struct Row {
-  const char* what;
-  std::string left;
-  std::string cut;
-};
-
-std::vector<Row> rows_of(const Judged& judged) {
-  std::vector<Row> rows{{"nothing", level_text(judged.linear.without), ""},
-                        {"less the linear model's prediction", level_text(judged.linear.left),
-                         cut_text(judged.linear)},
-                        {"less the augmented model's prediction", level_text(judged.augmented.left),
-                         cut_text(judged.augmented)}};
-  const auto motor = [&](const char* what, const std::optional<Remaining>& remaining) {
-    if (remaining) rows.push_back({what, level_text(remaining->left), cut_text(*remaining)});
+report::Table table_of(const Judged& judged, const std::string& unit) {
+  report::Table table;
+  table.caption = fmt::format(
+      "{}, {:.0f} s that no fit has seen: RMS about the mean, and the share of it taken away",
+      judged.source, judged.seconds);
+  table.header = {"what acts against the force",
+                  fmt::format("left [{}], 95 %", diagnose::shown_unit(unit)), "cut, 95 %"};
+  table.rows = {{"nothing", level_text(judged.linear.without)}};
+  const auto row = [&](const char* what, const std::optional<Remaining>& remaining) {
+    if (!remaining) return;
+    table.rows.push_back({what, level_text(remaining->left), cut_text(*remaining)});
   };
-  motor("the motor with the linear model (C)", judged.motor_linear);
-  motor("the motor with the augmented model (C+)", judged.motor_augmented);
-  return rows;
+  row("less the linear model's prediction", judged.linear);
+  row("less the augmented model's prediction", judged.augmented);
+  row("the motor with the linear model (C)", judged.motor_linear);
+  row("the motor with the augmented model (C+)", judged.motor_augmented);
+  return table;
 }
 
 }  // namespace
@@ -113,12 +112,7 @@ void print_recorded(const RecordedLoop& loop) {
   if (loop.verdict.strongest() == nullptr) fmt::print("{}\n", conclusion_text(loop));
   if (!loop.decision.same) fmt::print("{}\n", unseen_size_text(loop));
   for (const Judged& judged : loop.judged) {
-    fmt::print("\n{}, {:.0f} s that no fit has seen\n{:<44} {:<28} {}\n", judged.source,
-               judged.seconds, "what acts against the force",
-               fmt::format("left [{}], 95 %", diagnose::shown_unit(loop.unit)), "cut");
-    for (const Row& row : rows_of(judged)) {
-      fmt::print("{:<44} {:<28} {}\n", row.what, row.left, row.cut);
-    }
+    fmt::print("\n{}", report::in_plain_text(table_of(judged, loop.unit)));
   }
   for (const std::string& text : {kept_text(loop), motor_text(loop), parted_text(loop)}) {
     if (!text.empty()) fmt::print("\n{}\n", text);
@@ -140,15 +134,7 @@ report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& opti
               {"output", diagnose::axis_label(options.diagnose.output, loop.unit)},
               {"made by", report::made_by()}});
   page.section("What is left on unseen records");
-  for (const Judged& judged : loop.judged) {
-    report::Table table;
-    table.caption = fmt::format("{}, {:.0f} s: RMS about the mean, and the share of it taken away",
-                                judged.source, judged.seconds);
-    table.header = {"what acts against the force",
-                    fmt::format("left [{}], 95 %", diagnose::shown_unit(loop.unit)), "cut, 95 %"};
-    for (const Row& row : rows_of(judged)) table.rows.push_back({row.what, row.left, row.cut});
-    page.table(table);
-  }
+  for (const Judged& judged : loop.judged) page.table(table_of(judged, loop.unit));
   for (const std::string& text : {kept_text(loop), motor_text(loop), parted_text(loop)}) {
     if (!text.empty()) page.paragraph(text);
   }

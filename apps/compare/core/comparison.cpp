@@ -35,7 +35,7 @@ std::pair<std::vector<double>, std::vector<double>> pairs(const std::vector<doub
 }
 
 /// Gain of each person over B, + better.
-std::vector<double> gains(const Metric& metric, const std::vector<double>& moving,
+std::vector<double> gains(const Number& metric, const std::vector<double>& moving,
                           const std::vector<double>& with) {
   const double sign = metric.lower_is_better ? 1.0 : -1.0;
   std::vector<double> out(std::min(moving.size(), with.size()));

@@ -1,29 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "services/core/statistics/descriptive.hpp"
 #include "services/core/statistics/ratio.hpp"
 
 namespace stillhand::compare {
 
-/// A metric of tracking that every summary holds.
-struct Metric {
-  const char* key;          ///< of summary.json
-  const char* restoration;  ///< its key in "restoration"
-  const char* words;
-  const char* unit;
-  bool lower_is_better;
-};
-inline constexpr std::array kMetrics{
-    Metric{"rms_error_mm", "rms_error", "tracking error", "mm", true},
-    Metric{"dwell_ratio", "dwell_ratio", "dwell ratio", "", false},
-    Metric{"crossover_hz", "crossover", "crossover frequency", "Hz", false}};
+using session::Number;
+
+/// The numbers that are judged; every summary holds them.
+inline constexpr auto kMetrics = [] {
+  std::array<Number, std::ranges::count_if(session::kNumbers, &Number::is_judged)> judged{};
+  std::ranges::copy_if(session::kNumbers, judged.begin(), &Number::is_judged);
+  return judged;
+}();
 
 /// One value for each person; NaN: not known.
 using PerMetric = std::array<std::vector<double>, kMetrics.size()>;

@@ -10,6 +10,7 @@
 #include "apps/experiment/export/bids_texts.hpp"
 #include "apps/experiment/export/set_files.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/study/study.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
@@ -44,11 +45,8 @@ std::string trials_row(const ExportedTrial& trial) {
   std::string row = fmt::format("{:02}\t{}\t{}\t{}\t{}\t{}", trial.trial.number, cell(trial.block),
                                 cell(trial.place), trial.condition, cell(trial.completed),
                                 cell(trial.lost_share));
-  for (const auto metric : {&identification::TrackingMetrics::rms_error_mm,
-                            &identification::TrackingMetrics::dwell_ratio,
-                            &identification::TrackingMetrics::crossover_hz,
-                            &identification::TrackingMetrics::crossover_reference_hz}) {
-    row += "\t" + (trial.metrics ? cell((*trial.metrics).*metric) : std::string(kNone));
+  for (const session::Number& each : session::numbers(session::kExport)) {
+    row += "\t" + (trial.metrics ? cell((*trial.metrics).*each.place.metric) : std::string(kNone));
   }
   return row + "\n";
 }
@@ -60,9 +58,11 @@ std::string trials_tsv(const ExportedParticipant& participant, std::int64_t sess
     if (trial.session == session && trial.kind == kind) text += trials_row(trial);
   }
   if (text.empty()) return text;
-  return "run\tblock\tplace\tcondition\tcompleted\tlost_share\trms_error\tdwell_ratio\tcrossover\t"
-         "crossover_reference\n" +
-         text;
+  std::string header = "run\tblock\tplace\tcondition\tcompleted\tlost_share";
+  for (const session::Number& each : session::numbers(session::kExport)) {
+    header += std::string("\t") + each.name;
+  }
+  return header + "\n" + text;
 }
 
 std::string answers_tsv(const ExportedParticipant& participant, std::int64_t session) {

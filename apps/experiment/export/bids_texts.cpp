@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "version.hpp"
 
@@ -34,9 +35,9 @@ std::string text_of(const ordered_json& json) {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-ordered_json column(const char* description, const char* unit = nullptr) {
+ordered_json column(const char* description, std::string_view unit = "") {
   ordered_json out{{"Description", description}};
-  if (unit != nullptr) out["Units"] = unit;
+  if (!unit.empty()) out["Units"] = unit;
   return out;
 }
 
@@ -66,14 +67,9 @@ void add_trial_columns(ordered_json& json) {
                                                            "it was ended "
                                                            "early; it runs again as another run"}});
   json["lost_share"] = column("Lost share of the planned samples", "1");
-  json["rms_error"] = column("Root mean square of target minus cursor", "mm");
-  json["dwell_ratio"] = column("Share of the time with the cursor inside the target box", "1");
-  json["crossover"] = column(
-      "Crossover frequency of the open loop, from the line of -20 dB a decade through its "
-      "lowest eleven points",
-      "Hz");
-  json["crossover_reference"] =
-      column("Crossover frequency through the target, the remnant taken off", "Hz");
+  for (const session::Number& each : session::numbers(session::kExport)) {
+    json[each.name] = column(each.meaning, each.unit() == "-" ? "1" : each.unit());
+  }
 }
 
 const char* task_description(TrialKind kind) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/study/study.hpp"
 #include "services/core/contract/config_error.hpp"
 
@@ -52,33 +53,32 @@ void write_participants(const DataSet& set, recordings::TableFile& file) {
 }
 
 void write_trials(const DataSet& set, recordings::TableFile& file) {
-  Table table(file, "trials", "trials",
-              {{"participant", "-", CellKind::kText},
-               {"session", "-", CellKind::kText},
-               {"trial", "-", CellKind::kInteger},
-               {"task", "-", CellKind::kText},
-               {"block", "-", CellKind::kInteger},
-               {"place", "-", CellKind::kInteger},
-               {"condition", "-", CellKind::kText},
-               {"completed", "-", CellKind::kInteger},
-               {"lost_share", "-", CellKind::kReal},
-               {"rms_error", "mm", CellKind::kReal},
-               {"dwell_ratio", "-", CellKind::kReal},
-               {"crossover", "Hz", CellKind::kReal},
-               {"crossover_reference", "Hz", CellKind::kReal}});
+  std::vector<MessageColumn> columns{
+      {"participant", "-", CellKind::kText}, {"session", "-", CellKind::kText},
+      {"trial", "-", CellKind::kInteger},    {"task", "-", CellKind::kText},
+      {"block", "-", CellKind::kInteger},    {"place", "-", CellKind::kInteger},
+      {"condition", "-", CellKind::kText},   {"completed", "-", CellKind::kInteger},
+      {"lost_share", "-", CellKind::kReal}};
+  for (const session::Number& number : session::numbers(session::kExport)) {
+    columns.push_back({number.name, std::string(number.unit()), CellKind::kReal});
+  }
+  Table table(file, "trials", "trials", std::move(columns));
   for (const ExportedParticipant& each : set.participants) {
     for (const ExportedTrial& trial : each.trials) {
       const std::string session = session_name(trial.session);
-      const auto metric = [&](double identification::TrackingMetrics::* of) {
-        return trial.metrics ? real_cell((*trial.metrics).*of) : Cell();
-      };
-      table.add({std::string_view(each.code), std::string_view(session), trial.trial.number,
-                 std::string_view(name_of(trial.kind)), trial.block, trial.place,
-                 std::string_view(trial.condition), std::int64_t{trial.completed}, trial.lost_share,
-                 metric(&identification::TrackingMetrics::rms_error_mm),
-                 metric(&identification::TrackingMetrics::dwell_ratio),
-                 metric(&identification::TrackingMetrics::crossover_hz),
-                 metric(&identification::TrackingMetrics::crossover_reference_hz)});
+      std::vector<Cell> row{std::string_view(each.code),
+                            std::string_view(session),
+                            trial.trial.number,
+                            std::string_view(name_of(trial.kind)),
+                            trial.block,
+                            trial.place,
+                            std::string_view(trial.condition),
+                            std::int64_t{trial.completed},
+                            trial.lost_share};
+      for (const session::Number& number : session::numbers(session::kExport)) {
+        row.push_back(trial.metrics ? real_cell((*trial.metrics).*number.place.metric) : Cell());
+      }
+      table.add(row);
     }
   }
   table.finish();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 namespace stillhand::report {
 
@@ -13,9 +14,20 @@ inline nlohmann::ordered_json or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-/// A number that there may not be.
-inline nlohmann::ordered_json or_null(const std::optional<double>& value) {
-  return value ? or_null(*value) : nlohmann::ordered_json(nullptr);
+/// A number, an interval or a pair that there may not be.
+template <typename Value>
+nlohmann::ordered_json or_null(const std::optional<Value>& value) {
+  if (!value) return nullptr;
+  if constexpr (std::is_same_v<Value, double>) {
+    return or_null(*value);
+  } else if constexpr (requires {
+                         value->low;
+                         value->high;
+                       }) {
+    return {value->low, value->high};
+  } else {
+    return *value;
+  }
 }
 
 /// A name or a reason; null where there is none.

@@ -37,12 +37,21 @@ const char* class_of(Emphasis emphasis) {
   return "";
 }
 
+Align align_of(const Table& table, std::size_t column) {
+  if (column < table.align.size()) return table.align[column];
+  return column == 0 ? Align::kLeft : Align::kRight;
+}
+
 const char* class_of(const Table& table, std::size_t column) {
-  const Align align = column < table.align.size() ? table.align[column]
-                      : column == 0               ? Align::kLeft
-                                                  : Align::kRight;
+  const Align align = align_of(table, column);
   if (align == Align::kLeft) return "l";
   return align == Align::kRight ? "r" : "c";
+}
+
+// Of UTF-8.
+std::size_t characters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char each) { return (each & 0xC0) != 0x80; }));
 }
 
 // A name of a file as a relative reference, RFC 3986: "./" so that no colon makes a scheme of it.
@@ -92,6 +101,28 @@ Cell linked(std::string text, std::string_view file) {
   Cell out(std::move(text));
   out.href = reference_to(file);
   return out;
+}
+
+std::string in_plain_text(const Table& table) {
+  std::vector<std::vector<Cell>> lines{{table.header.begin(), table.header.end()}};
+  lines.insert(lines.end(), table.rows.begin(), table.rows.end());
+  std::vector<std::size_t> widths(table.header.size());
+  for (const std::vector<Cell>& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      widths[i] = std::max(widths[i], characters(line[i].text));
+    }
+  }
+  std::string text = table.caption + '\n';
+  for (const std::vector<Cell>& line : lines) {
+    std::string row;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const std::string space(widths[i] - characters(line[i].text), ' ');
+      if (i > 0) row += "   ";
+      row += align_of(table, i) == Align::kLeft ? line[i].text + space : space + line[i].text;
+    }
+    text += row.substr(0, row.find_last_not_of(' ') + 1) + '\n';
+  }
+  return text;
 }
 
 Page::Page(std::string title, std::string lead)

@@ -41,6 +41,9 @@ struct Table {
   std::vector<Align> align = {};  ///< of the columns; default: the first left, the others right
 };
 
+/// A table for the terminal: the caption, then a line for the header and each row.
+std::string in_plain_text(const Table& table);
+
 /// One HTML page that needs no other file: it contains its style and figures, has no script and
 /// loads nothing.  Its links lead to other pages of its folder.  It follows the reader's light or
 /// dark scheme, and is readable on a phone and on paper.  Every text is plain text and escaped.

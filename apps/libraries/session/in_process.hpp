@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "apps/libraries/session/core/trial_forces.hpp"
 #include "apps/libraries/session/loop.hpp"
 #include "apps/libraries/session/protocol.hpp"
-#include "apps/libraries/session/trial_forces.hpp"
 #include "services/core/cancellation/parts/command_filter.hpp"
 #include "services/core/cancellation/parts/countermeasure.hpp"
 #include "services/core/display/tracking_display.hpp"

@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/libraries/session/force_budget.hpp"
 #include "apps/libraries/session/misses.hpp"
 #include "apps/libraries/session/on_time.hpp"
 #include "apps/libraries/session/sensed_share.hpp"
 #include "apps/libraries/session/session_recording.hpp"
-#include "apps/libraries/session/trial_forces.hpp"
 #include "apps/libraries/session/trial_outcome.hpp"
-#include "services/core/identification/tracking_metrics.hpp"
 
 namespace stillhand::session {
 
@@ -25,26 +24,20 @@ struct Excerpt {
   std::vector<double> target_mm, cursor_mm;
 };
 
-/// One tracking trial, computed from the recording alone.
-struct TrialResult {
+/// One tracking trial, computed from the recording alone.  The cancelled share is known only where
+/// the platform moves, the delay of the counterforce only where a prediction of f' is all that
+/// drives the motor: a shaped stick answers the stick's motion.
+struct TrialResult : TrialNumbers {
   std::int64_t number;
   Condition label;
-  identification::TrackingMetrics metrics;
   std::int64_t missing_ticks = 0;  ///< of the tracking samples; the last one before is held
-  /// Share of the feedthrough force that the motor cancelled: 1 - RMS(f' + f_m) / RMS(f'), f' the
-  /// force the body would exert with the stick held, f_m the motor's; only where the platform
-  /// moves.
-  std::optional<double> cancelled_share;
-  /// The same from what is sensed, next to the session's trial without cancellation, Eq. SN-7.
+  /// The cancelled share from what is sensed, next to the session's trial without cancellation, Eq.
+  /// SN-7.
   std::optional<SensedShare> sensed_share;
   /// RMS of the error of pursuit behind the trial's first third, as in the study's table of
   /// mitigations (SU-19): what adapts may settle in it.
   double settled_rms_error_mm = 0.0;
-  TrialForces forces;
   std::optional<ForceBudget> budget;  ///< of condition C alone, where the feedthrough is known
-  /// How late the motor's force opposes f', counterforce_delay_s(); only where a prediction of f'
-  /// is all that drives it: a shaped stick answers the stick's motion.
-  std::optional<double> counterforce_delay_s;
   /// Numbers, in the recording, of the models that the trial ran; none: it ran none of that kind.
   struct Models {
     std::optional<std::int32_t> force;     ///< as the motor commands name it

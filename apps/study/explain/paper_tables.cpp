@@ -4,7 +4,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
-#include "apps/libraries/session/paper_table.hpp"
+#include "apps/libraries/session/core/trial_numbers.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -35,7 +35,7 @@ const std::array<std::string, kTableFigures>& table_figure_names() {
     std::size_t at = 0;
     for (const char* what : {"A ", "A-B ", "B-C ", "A-B sd ", "B-C sd "}) {
       for (const auto& metric : session::kMetrics) {
-        names[at++] = std::string(what) + metric.restoration_key;
+        names[at++] = std::string(what) + metric.name;
       }
     }
     return names;
@@ -59,19 +59,19 @@ PaperTables paper_tables(double unit_mm) {
     const auto at = static_cast<std::size_t>(k);
     const auto& metric = session::kMetrics[at];
     const double unit = k == 0 ? unit_mm : 1.0;
-    const double ab = unit * (metric.paper_b - metric.paper_a);
-    const double bc = unit * (metric.paper_c - metric.paper_b);
-    const double sd_ab = deviation_from_p(ab, metric.paper_p_ab, kPaperSubjects);
-    const double sd_bc = deviation_from_p(bc, metric.paper_p_bc, kPaperSubjects);
-    out.values[k] = unit * metric.paper_a;
+    const double ab = unit * (metric.paper->b - metric.paper->a);
+    const double bc = unit * (metric.paper->c - metric.paper->b);
+    const double sd_ab = deviation_from_p(ab, metric.paper->p_ab, kPaperSubjects);
+    const double sd_bc = deviation_from_p(bc, metric.paper->p_bc, kPaperSubjects);
+    out.values[k] = unit * metric.paper->a;
     out.values[3 + k] = ab;
     out.values[6 + k] = bc;
     out.values[9 + k] = std::log(sd_ab);
     out.values[12 + k] = std::log(sd_bc);
     // Differences share the uncertainty of a condition; a deviation goes with its difference.
-    const double of_a = variance_of(at, unit * metric.paper_a, unit);
-    const double of_b = variance_of(at, unit * metric.paper_b, unit);
-    const double of_c = variance_of(at, unit * metric.paper_c, unit);
+    const double of_a = variance_of(at, unit * metric.paper->a, unit);
+    const double of_b = variance_of(at, unit * metric.paper->b, unit);
+    const double of_c = variance_of(at, unit * metric.paper->c, unit);
     // A, B - A, C - B, ln s of A-B and of B-C as functions of the three conditions.
     Eigen::Matrix<double, 5, 3> of;
     of << 1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, 0, 0, 0, 0;
@@ -85,7 +85,7 @@ PaperTables paper_tables(double unit_mm) {
       for (Eigen::Index j = 0; j < 5; ++j) out.uncertainty(3 * i + k, 3 * j + k) = own(i, j);
     }
     if (k == 0) {
-      out.per_log_unit[0] = unit * metric.paper_a;
+      out.per_log_unit[0] = unit * metric.paper->a;
       out.per_log_unit[3] = ab;
       out.per_log_unit[6] = bc;
       out.per_log_unit[9] = out.per_log_unit[12] = 1.0;

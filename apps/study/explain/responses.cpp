@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "apps/libraries/session/paper_table.hpp"
+#include "apps/libraries/session/core/trial_numbers.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/system/process/run_jobs.hpp"
 
@@ -14,8 +14,8 @@ Response response_of(const SubjectResult& result) {
   Response out;
   std::size_t at = 0;
   for (const Condition condition : kPaperConditions) {
-    const auto& metrics = result.trials.at(condition).metrics;
-    for (const auto& metric : session::kMetrics) out.metrics[at++] = metric.of(metrics);
+    const TrackedTrial& trial = result.trials.at(condition);
+    for (const auto& metric : session::kMetrics) out.metrics[at++] = metric.of(trial);
   }
   const TrackedTrial& cancelled = result.trials.at(kC);
   out.observed = {cancelled.counterforce_delay_s, cancelled.cancelled_share,

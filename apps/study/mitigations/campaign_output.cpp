@@ -92,25 +92,9 @@ void write_campaign(const Campaign& campaign, const std::string& command_line,
 }
 
 void print_campaign(const Campaign& campaign) {
-  const TrialTask task = campaign.options.tasks.back();
-  fmt::print(
-      "\n{}, RMS error restored, (B - M)/(B - A)\n{:<15} {:<8} {:<9} {:>18}  {:>18} {:>6} "
-      "{:>16} {:>6} {:>7}\n",
-      kTrialTaskNames[static_cast<std::size_t>(task)], "mitigation", "model", "motion",
-      "mean [95 %]", "median [95 %]", "worst", "harmed [95 %]", "motor", "effort");
-  for (const CellFigures& cell : campaign.cells) {
-    if (cell.key.task != task || cell.key.mitigation == kB) continue;
-    const auto& mean = cell.restored_mean;
-    const auto percent = [](double share) { return 100.0 * share; };
-    fmt::print(
-        "{:<15} {:<8} {:<9} {:>4.0f} [{:>4.0f}, {:>4.0f}] %  {:>4.0f} [{:>4.0f}, {:>4.0f}] % "
-        "{:>4.0f} % {:>4.0f} [{:>2.0f}, {:>3.0f}] % {:>4.1f} N {:>5.1f} N\n",
-        name_of(cell.key), model_of(cell.key), motion_of(cell.key),
-        percent(mean ? mean->ratio : NAN), percent(mean ? mean->low : NAN),
-        percent(mean ? mean->high : NAN), percent(cell.restored_median.median),
-        percent(cell.restored_median.low), percent(cell.restored_median.high),
-        percent(cell.worst_restored), percent(cell.harm.share), percent(cell.harm.low),
-        percent(cell.harm.high), cell.motor_n, cell.effort_n);
+  for (const TrialMotion motion : campaign.options.motions) {
+    fmt::print("\n{}",
+               report::in_plain_text(table_of(campaign, campaign.options.tasks.back(), motion)));
   }
   for (const std::string& line : campaign.chosen.log) fmt::print("{}\n", line);
   fmt::print("chosen on {} other people; {:.0f} s of processor time, {:.0f} s on the clock\n",

@@ -17,6 +17,8 @@ std::string mitigations_csv(const Campaign& campaign);
 std::string mitigation_people_csv(const Campaign& campaign);
 /// One figure a task: restored share of every mitigation, a panel a motion.
 std::vector<report::Figure> campaign_figures(const Campaign& campaign);
+/// Every mitigation in one task and motion.
+report::Table table_of(const Campaign& campaign, TrialTask task, TrialMotion motion);
 report::Page campaign_page(const Campaign& campaign, const std::string& command_line,
                            const std::vector<report::Drawing>& drawings);
 

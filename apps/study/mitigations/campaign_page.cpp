@@ -89,6 +89,19 @@ report::Figure figure_of(const Campaign& campaign, TrialTask task) {
   return out;
 }
 
+report::Table kinds_table(const Campaign& campaign) {
+  report::Table table;
+  table.caption = "What each mitigation does.";
+  table.header = {"mitigation", "what it does"};
+  table.align = {report::Align::kLeft, report::Align::kLeft};
+  for (const Condition each : campaign.options.mitigations) {
+    table.rows.push_back({mitigation_name(each), row_of(each).meaning});
+  }
+  return table;
+}
+
+}  // namespace
+
 report::Table table_of(const Campaign& campaign, TrialTask task, TrialMotion motion) {
   report::Table table;
   table.caption =
@@ -128,19 +141,6 @@ report::Table table_of(const Campaign& campaign, TrialTask task, TrialMotion mot
   }
   return table;
 }
-
-report::Table kinds_table(const Campaign& campaign) {
-  report::Table table;
-  table.caption = "What each mitigation does.";
-  table.header = {"mitigation", "what it does"};
-  table.align = {report::Align::kLeft, report::Align::kLeft};
-  for (const Condition each : campaign.options.mitigations) {
-    table.rows.push_back({mitigation_name(each), row_of(each).meaning});
-  }
-  return table;
-}
-
-}  // namespace
 
 std::vector<report::Figure> campaign_figures(const Campaign& campaign) {
   std::vector<report::Figure> out;

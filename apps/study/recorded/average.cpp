@@ -71,18 +71,15 @@ TrackedTrial averaged(const Trials& trials) {
     }
     out.closed_loop[k] = sum / static_cast<double>(trials.size());
   }
-  for (const auto metric :
-       {&TrackingMetrics::rms_error_mm, &TrackingMetrics::dwell_ratio,
-        &TrackingMetrics::crossover_hz, &TrackingMetrics::crossover_reference_hz}) {
-    out.metrics.*metric = mean_of(trials, [&](const TrackedTrial& t) { return t.metrics.*metric; });
+  for (const session::Number& number : session::kNumbers) {
+    number.place.in(out) =
+        mean_of(trials, [&](const TrackedTrial& t) { return number.place.in(t); });
   }
   for (const auto series : {&TrackingMetrics::moving_rms_mm, &TrackingMetrics::moving_dwell}) {
     out.metrics.*series = mean_series(trials, series);
   }
-  for (const auto each : {&TrackedTrial::cancelled_share, &TrackedTrial::feedthrough_rms_n,
-                          &TrackedTrial::counterforce_delay_s}) {
-    out.*each = mean_of(trials, [&](const TrackedTrial& t) { return t.*each; });
-  }
+  out.feedthrough_rms_n =
+      mean_of(trials, [](const TrackedTrial& t) { return t.feedthrough_rms_n; });
   return out;
 }
 

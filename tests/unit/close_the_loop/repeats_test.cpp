@@ -40,7 +40,7 @@ TEST(RepeatsTest, TheResultsDoNotDependOnTheThreads) {
   const Conditions four = run(result, 3, 4);
   for (const char* label : kConditions) {
     for (std::size_t r = 0; r < 3; ++r) {
-      for (const Measure& measure : kMeasures) {
+      for (const Number& measure : session::numbers(session::kLoop)) {
         const double first = measure.of(one.at(label)[r]);
         const double second = measure.of(four.at(label)[r]);
         EXPECT_TRUE(first == second || (std::isnan(first) && std::isnan(second)))
@@ -82,7 +82,7 @@ TEST(RepeatsTest, TheSameModelGivesTheSameTrial) {
   result.rounds[0].model = result.followed_model;
   const Conditions sut = run(result, 2, 2);
   for (std::size_t r = 0; r < 2; ++r) {
-    for (const Measure& measure : kMeasures) {
+    for (const Number& measure : session::numbers(session::kLoop)) {
       if (std::isnan(measure.of(sut.at("C")[r]))) continue;
       EXPECT_EQ(measure.of(sut.at("C")[r]), measure.of(sut.at("C'")[r])) << measure.key;
       EXPECT_EQ(measure.of(sut.at("C")[r]), measure.of(sut.at("C+")[r])) << measure.key;

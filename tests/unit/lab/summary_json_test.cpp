@@ -34,10 +34,10 @@ session::TrialResult trial(Condition label, double rms_error_mm, double dwell,
 session::SessionResult papers_session() {
   session::SessionResult result;
   for (const Condition label : session::kPaperConditions) {
-    const auto of = [label](const session::Metric& metric) {
-      return label == Condition::kA   ? metric.paper_a
-             : label == Condition::kB ? metric.paper_b
-                                      : metric.paper_c;
+    const auto of = [label](const session::Number& metric) {
+      return label == Condition::kA   ? metric.paper->a
+             : label == Condition::kB ? metric.paper->b
+                                      : metric.paper->c;
     };
     result.trials.push_back(
         trial(label, of(session::kMetrics[0]), of(session::kMetrics[1]), of(session::kMetrics[2])));
@@ -64,9 +64,8 @@ ordered_json json_of(const session::SessionResult& result,
 // crossover's 0.15 6.7 %.
 TEST(SummaryJsonTest, TheRestorationOfThePapersMeansIsThePapers) {
   const auto json = json_of(papers_session())["restoration"];
-  for (const session::Metric& metric : session::kMetrics) {
-    EXPECT_NEAR(100.0 * json[metric.restoration_key].get<double>(), metric.paper_restored_percent,
-                6.7)
+  for (const session::Number& metric : session::kMetrics) {
+    EXPECT_NEAR(100.0 * json[metric.name].get<double>(), metric.paper->restored_percent, 6.7)
         << metric.key;
   }
   EXPECT_DOUBLE_EQ(json["rms_error"], (9.62 - 7.01) / (9.62 - 4.04));
@@ -105,8 +104,8 @@ TEST(SummaryJsonTest, WithoutAllThreeConditionsNothingIsRestored) {
     session::SessionResult result = papers_session();
     result.trials.erase(result.trials.begin() + static_cast<std::ptrdiff_t>(missing));
     const auto json = json_of(result);
-    for (const session::Metric& metric : session::kMetrics) {
-      EXPECT_TRUE(json["restoration"][metric.restoration_key].is_null()) << metric.key;
+    for (const session::Number& metric : session::kMetrics) {
+      EXPECT_TRUE(json["restoration"][metric.name].is_null()) << metric.key;
     }
     EXPECT_EQ(json["conditions"].size(), 2u);
   }

@@ -151,5 +151,16 @@ TEST(PageTest, AWriteThatFailsHalfWayLeavesTheOldPageAndNothingElse) {
   EXPECT_EQ((std::string{std::istreambuf_iterator<char>(file), {}}), "old");
 }
 
+TEST(TableTest, InATerminalColumnsAreAsWideAsTheirLongestText) {
+  const Table table{.caption = "Means",
+                    .header = {"metric", "A", "B"},
+                    .rows = {{"f₀ [Hz]", "−4.04", "1"}, {"error", "20"}}};
+  EXPECT_EQ(in_plain_text(table),
+            "Means\n"
+            "metric        A   B\n"
+            "f₀ [Hz]   −4.04   1\n"
+            "error        20\n");
+}
+
 }  // namespace
 }  // namespace stillhand::report

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. SN-4 to SN-6 on signals whose answers are known.
-#include "apps/libraries/session/trial_forces.hpp"
+#include "apps/libraries/session/core/trial_forces.hpp"
 
 #include <gtest/gtest.h>
 

@@ -26,6 +26,7 @@ using testing::HasSubstr;
 constexpr std::size_t kError = 0;
 constexpr std::size_t kDwell = 1;
 constexpr std::size_t kCrossover = 2;
+constexpr std::size_t kShare = session::index_of("cancelled_share");
 // Sums of at most some hundred numbers of one size, each operation exact to 2^-53: 1e-13 of them.
 constexpr double kRounding = 1e-13;
 
@@ -130,7 +131,7 @@ TEST(AnalyseTest, CPrimeAndCPlusAreComparedWithBAndWithTheCancellerBeforeThem) {
   EXPECT_THAT(pairs, ElementsAre("A-B", "B-C", "B-C'", "B-C+", "C-C'", "C'-C+", "C-C+"));
   EXPECT_NEAR(sut.restoration.at(kCPrime)[kError].share.value(), 1.0, 1e-9);
   EXPECT_NEAR(sut.restoration.at(kCPlus)[kError].share.value(), 0.0, 1e-9);
-  EXPECT_TRUE(sut.cancelled_share.contains(kCPlus));
+  EXPECT_TRUE(gives(kCPlus, session::kNumbers[kShare]));
 }
 
 // C as good as A is 1, C as bad as B is 0, whatever the numbers.
@@ -350,11 +351,14 @@ TEST(AnalyseTest, TheSurvivingShareIsOfTheOwnModelsGain) {
 TEST(AnalyseTest, OnlyConditionCHasACancelledShare) {
   const auto results = random_results(4, "ABC", 14);
   const Analysis sut = analyse(results);
-  ASSERT_EQ(sut.cancelled_share.size(), 1u);
+  const session::Number& share = session::kNumbers[kShare];
+  EXPECT_FALSE(gives(kA, share));
+  EXPECT_FALSE(gives(kB, share));
+  EXPECT_FALSE(gives(kD, share));
+  EXPECT_TRUE(gives(kC, share));
   double sum = 0.0;
   for (const SubjectResult& result : results) sum += result.trials.at(kC).cancelled_share;
-  EXPECT_NEAR(sut.cancelled_share.at(kC).mean, sum / 4.0, kRounding);
-  EXPECT_TRUE(analyse(random_results(4, "ABD", 14)).cancelled_share.empty());
+  EXPECT_NEAR(sut.conditions.at(kC)[kShare].mean, sum / 4.0, kRounding);
 }
 
 TEST(AnalyseTest, SubjectsWhosePapersFitCouldNotCancelAreCounted) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/libraries/session/trial_forces.hpp"
+#include "apps/libraries/session/core/trial_forces.hpp"
 
 #include <cmath>
 #include <cstddef>
