@@ -13,6 +13,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/system/process/clock.hpp"
 #include "tests/emulators/odrive_emulator.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/device_rig/emulated_drive.hpp"
 
@@ -28,12 +29,7 @@ constexpr SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
 class LinkTest : public testing::Test {
  protected:
   std::string refusal() {
-    try {
-      const DriveLink sut(config_, kLimits);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "";
+    return support::refusal([&] { const DriveLink sut(config_, kLimits); });
   }
   /// Orders until the condition holds.
   template <typename Condition>

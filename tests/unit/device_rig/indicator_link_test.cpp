@@ -15,6 +15,7 @@
 #include "services/devices/device_rig/device_plant.hpp"
 #include "services/system/process/clock.hpp"
 #include "tests/emulators/indicator_side.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -65,12 +66,7 @@ bool comes(const std::function<bool()>& is_there) {
 }
 
 std::string refusal(const IndicatorConfig& config) {
-  try {
-    const IndicatorLink sut(config);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return support::refusal([&] { const IndicatorLink sut(config); });
 }
 
 // A line has three decimals of a gram: 5e-6 N.

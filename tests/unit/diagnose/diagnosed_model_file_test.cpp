@@ -6,6 +6,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/files/diagnosis/model_file.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -35,12 +36,7 @@ Model model_with(Effect effect) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    static_cast<void>(parse_model(text, "m.json"));
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal([&] { static_cast<void>(parse_model(text, "m.json")); });
 }
 
 // The first effect of a good file, changed.
@@ -129,12 +125,7 @@ TEST(DiagnosedModelFileTest, AWrongPartOfWhatIsCarriedIsNamed) {
   const auto refused = [](const auto& change) -> std::string {
     json file = json::parse(model_json(model_with(tone()), carried_path()));
     change(file["carried"]);
-    try {
-      static_cast<void>(parse_carried_model(file.dump(), "m.json"));
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return support::refusal([&] { (void)parse_carried_model(file.dump(), "m.json"); });
   };
   EXPECT_EQ(refused([](json&) {}), "accepted");
   EXPECT_THAT(refused([](json& entry) { entry["stability"] = "refused"; }),

@@ -9,6 +9,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/files/diagnosis/model_file.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::diagnosis {
@@ -25,12 +26,7 @@ Model good_model() {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    static_cast<void>(parse_model(text, "m.json"));
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal([&] { static_cast<void>(parse_model(text, "m.json")); });
 }
 
 std::string refusal_after(const std::function<void(json&)>& change) {

@@ -9,6 +9,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/units.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
@@ -45,12 +46,7 @@ std::vector<std::string> names_of(const Signals& signals) {
 
 std::string error_of(const Measurement& measurement, const std::vector<std::string>& inputs,
                      const std::string& output) {
-  try {
-    const Signals signals(measurement, inputs, output);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { const Signals signals(measurement, inputs, output); });
 }
 
 TEST(SignalsTest, AUnitSaysWhatAChannelIs) {

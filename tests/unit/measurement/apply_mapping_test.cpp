@@ -6,6 +6,7 @@
 
 #include "apps/libraries/measurement/tables/text_table.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -29,12 +30,7 @@ MappedRows read(const std::string& text, const Mapping& asked = {}) {
 }
 
 std::string error_of(const std::string& text, const Mapping& asked = {}) {
-  try {
-    (void)read(text, asked);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)read(text, asked); });
 }
 
 TEST(ApplyMappingTest, ColumnsBecomeChannelsInSiUnits) {

@@ -11,6 +11,7 @@
 #include "services/core/recording/mcap/mcap_writer.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "tests/support/cdr_bytes.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -81,12 +82,7 @@ class Bag {
 std::string path_of(const char* name) { return testing::TempDir() + name; }
 
 std::string error_of(const std::string& path, const ReadOptions& options = {}) {
-  try {
-    (void)read_measurement(path, options);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)read_measurement(path, options); });
 }
 
 ReadOptions mapped(const std::vector<const char*>& wishes) {

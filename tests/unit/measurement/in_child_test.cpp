@@ -8,6 +8,7 @@
 #include <csignal>
 
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -15,12 +16,8 @@ namespace {
 using testing::HasSubstr;
 
 std::string error_of(const std::function<void(Wire&)>& work) {
-  try {
-    in_child("ride.mat", work, [](Wire& wire) { (void)wire.get_numbers(10); });
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal(
+      [&] { in_child("ride.mat", work, [](Wire& wire) { (void)wire.get_numbers(10); }); });
 }
 
 TEST(InChildTest, WhatTheChildPutsArrives) {

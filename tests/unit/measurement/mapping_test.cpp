@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -15,12 +16,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { call(); });
 }
 
 std::string file_of(const std::string& text) {

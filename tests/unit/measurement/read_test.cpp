@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -24,12 +25,7 @@ std::string file_of(const std::string& text) {
 }
 
 std::string error_of(const std::string& path, const ReadOptions& options = {}) {
-  try {
-    (void)read_measurement(path, options);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)read_measurement(path, options); });
 }
 
 // What is wrong with a table, without its path.

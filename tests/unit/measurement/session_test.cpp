@@ -11,6 +11,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/flag.hpp"
 #include "tests/support/recorded_file.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/session_file.hpp"
 
 namespace stillhand::measurement {
@@ -62,12 +63,7 @@ std::vector<std::byte> session(bool of_experiment = false) {
 }
 
 std::string error_of(const std::string& path, const std::string& trial = {}) {
-  try {
-    (void)read_measurement(path, {trial});
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)read_measurement(path, {trial}); });
 }
 
 std::vector<std::string> names_of(const Measurement& measurement) {

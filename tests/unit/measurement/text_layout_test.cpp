@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -13,12 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string error_of(std::string_view text, const TextForm& asked = {}) {
-  try {
-    (void)find_layout(text, asked, "ride.csv");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)find_layout(text, asked, "ride.csv"); });
 }
 
 TEST(TextLayoutTest, SeparatorAndDecimalSignAreFound) {
