@@ -10,10 +10,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "apps/predict/start_state.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/start_state.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::predict {
@@ -157,23 +157,9 @@ diagnosis::FreeRun run_of(const Prepared& made, const diagnosis::Signals& signal
                     "inputs like those that the model was fitted to");
 }
 
-// The signals with a start state at each stretch.
-diagnosis::Signals started(const diagnosis::Signals& signals, const StartStates& states) {
-  std::vector<double> e(signals.size(), 0.0);
-  for (std::size_t s = 0; s < signals.stretches().size(); ++s) {
-    const diagnosis::Stretch& stretch = signals.stretches()[s];
-    const std::size_t count =
-        std::min(stretch.end - stretch.first, static_cast<std::size_t>(states.rows()));
-    for (std::size_t i = 0; i < count; ++i) {
-      e[stretch.first + i] = states(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(s));
-    }
-  }
-  return signals.with_start(std::move(e));
-}
-
 // The first samples of each stretch of the recording that has a stretch of the model.
-std::vector<std::vector<std::size_t>> given_rows(const Prepared& made, std::size_t samples) {
-  std::vector<std::vector<std::size_t>> rows;
+diagnosis::GivenRows given_rows(const Prepared& made, std::size_t samples) {
+  diagnosis::GivenRows rows;
   for (const diagnosis::Stretch& stretch : made.whole.stretches) {
     if (stretch.end - stretch.first < made.factor) continue;
     rows.emplace_back();
@@ -186,21 +172,14 @@ std::vector<std::vector<std::size_t>> given_rows(const Prepared& made, std::size
 
 // Eq. DG-82.
 diagnosis::Signals started_from_output(const Prepared& made, const diagnosis::Signals& signals,
-                                       const std::vector<std::vector<std::size_t>>& rows) {
-  std::vector<std::vector<double>> inputs;
-  for (const diagnosis::Signal& input : signals.inputs()) inputs.push_back(input.values);
-  const diagnosis::Body& body = made.model.body;
-  const auto order = static_cast<Eigen::Index>(body.order());
-  const StartStates rest = StartStates::Zero(order, static_cast<Eigen::Index>(rows.size()));
-  if (order == 0) return started(signals, rest);
-  const std::vector<double> output = run_of(made, started(signals, rest)).body;
-  const Answer answer = [&](const StartStates& states) {
-    return spread_out(run_of(made, started(signals, states)).prediction, made.working, made.whole,
-                      made.factor);
+                                       const diagnosis::GivenRows& rows) {
+  const diagnosis::Answer answer = [&](const diagnosis::Signals& started) {
+    return spread_out(run_of(made, started).prediction, made.working, made.whole, made.factor);
   };
-  return started(signals, most_likely_start(made.whole.find(made.model.output)->values, rows,
-                                            state_spread(body, inputs, output, signals.stretches()),
-                                            made.model.heldout_rmse, answer));
+  const auto states = diagnosis::most_likely_start(
+      made.model, signals, diagnosis::spread_of(made.model, signals),
+      made.whole.find(made.model.output)->values, rows, made.model.heldout_rmse, answer);
+  return diagnosis::started(made.model, signals, states);
 }
 
 }  // namespace

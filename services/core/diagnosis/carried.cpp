@@ -263,7 +263,7 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
     const std::vector<double> certainty = certainty_of(found, signals, blocks);
     const Model shared = shared_part(found, certainty, counts, carried.left_out);
     const double rms = noise.norm() / std::sqrt(std::max(sum_of(masked.weight()), 1.0));
-    PartsOut parts(found, masked, blocks, noise, rms);
+    PartsOut parts(found, masked, blocks, noise, rms, kGivenForANumber * state_size(found));
     const std::vector<ResponsePrior> priors =
         priors_of(shared, baseline, rms, carried.bands, signals);
     carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, parts, priors);

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/fitting/held_out.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/parts_out.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -13,7 +17,7 @@ namespace {
 // A static model that is hardly worse is preferred to a dynamic one.
 constexpr double kStaticIsEnough = 1.02;
 constexpr double kSameChannel = 0.95;
-// Of the held-out error.  A mode that its bound hides leaves most of it; less may be what an effect
+// Of the error.  A mode that its bound hides leaves most of it; less may be what an effect
 // leaves, which freer poles imitate (the shaking table of RESULTS: 0.92).
 constexpr double kWorthSlowPoles = 0.5;
 
@@ -37,35 +41,44 @@ bool related(const Signals& signals) {
   return false;
 }
 
-Baseline chosen_baseline(const Signals& signals, const Blocks& blocks,
-                         const DiagnoseOptions& options, std::string& name) {
-  if (options.model == ModelClass::kArx) {
-    name = "arx";
-    return fit_baseline(signals, blocks, options.order);
-  }
-  Baseline linear = fit_baseline(signals, blocks, 0);
-  name = "linear";
-  if (options.model == ModelClass::kLinear || related(signals)) return linear;
-  Baseline arx = fit_baseline(signals, blocks, options.order);
-  const double static_rmse = held_out(linear.model, signals, blocks).rmse();
-  if (static_rmse <= kStaticIsEnough * held_out(arx.model, signals, blocks).rmse()) return linear;
-  name = "arx";
-  return arx;
+// By parts held out whole, each from a start state: a body that holds a level says nothing without.
+Trial judged_from_start(const Model& model, const Signals& signals, const Blocks& blocks,
+                        int order) {
+  FreeRun run;
+  const Eigen::VectorXd residual = residual_of(model, signals, run);
+  const auto given = kGivenForANumber * static_cast<std::size_t>(order);
+  Trial trial{model, PartsOut(model, signals, blocks, residual, 1.0, given).from_start(model)};
+  trial.rmse = trial.held_out.rmse();
+  return trial;
 }
 
 // A body that rings or holds a level for long, where the bound of its poles holds back the one that
-// was fitted, Eq. DG-66.
-void allow_slow_poles(Diagnosis& diagnosis, Signals& signals, const Blocks& blocks) {
-  const Body& body = diagnosis.baseline.model.body;
-  if (body.order() == 0 || !is_near_bound(body)) return;
+// was fitted, Eq. DG-66.  True where it is kept.
+bool allow_slow_poles(Baseline& baseline, Signals& signals, const Blocks& blocks, int order) {
+  const Body& body = baseline.model.body;
+  if (body.order() == 0 || !is_near_bound(body)) return false;
   const Signals slow = signals.with_slow_poles();
-  Baseline other = fit_baseline(slow, blocks, diagnosis.options.order);
-  const double before = held_out(diagnosis.baseline.model, signals, blocks).rmse();
-  if (!(held_out(other.model, slow, blocks).rmse() < kWorthSlowPoles * before)) return;
-  diagnosis.baseline = std::move(other);
+  const double quick = judged_from_start(baseline.model, signals, blocks, order).rmse;
+  std::vector<Baseline> fitted;
+  std::vector<Trial> tried;
+  for (int p = order; p > 0; --p) {
+    fitted.push_back(fit_baseline(slow, blocks, p));
+    fitted.back().order = order;
+    tried.push_back(judged_from_start(fitted.back().model, slow, blocks, order));
+  }
+  const Trial& best = *std::ranges::min_element(tried, by_rmse);
+  if (!(best.rmse < kWorthSlowPoles * quick)) return false;
+  // Of those that tie, the one that explains most between samples that it knows.
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    if (!ties_with(tried[i], best, quick, {})) continue;
+    const double rmse = held_out(tried[i].model, slow, blocks).rmse();
+    if (!(rmse < least)) continue;
+    least = rmse;
+    baseline = fitted[i];
+  }
   signals = slow;
-  diagnosis.notes.emplace_back(
-      "the body is slow: a mode of it may ring for half of the recording, and a level stays");
+  return true;
 }
 
 }  // namespace
@@ -92,8 +105,28 @@ void check_excitation(const Signals& signals, const std::string& source) {
 }
 
 void fit_first_model(Diagnosis& diagnosis, Signals& signals, const Blocks& blocks) {
-  diagnosis.baseline = chosen_baseline(signals, blocks, diagnosis.options, diagnosis.model_class);
-  allow_slow_poles(diagnosis, signals, blocks);
+  const DiagnoseOptions& options = diagnosis.options;
+  const bool asked = options.model == ModelClass::kArx;
+  if (!asked) {
+    diagnosis.model_class = "linear";
+    diagnosis.baseline = fit_baseline(signals, blocks, 0);
+    if (options.model == ModelClass::kLinear || related(signals)) return;
+  }
+  Baseline arx = fit_baseline(signals, blocks, options.order);
+  Signals allowed = signals;
+  const bool slow = allow_slow_poles(arx, allowed, blocks, options.order);
+  if (!asked && !slow &&
+      held_out(diagnosis.baseline.model, signals, blocks).rmse() <=
+          kStaticIsEnough * held_out(arx.model, signals, blocks).rmse()) {
+    return;
+  }
+  diagnosis.model_class = "arx";
+  diagnosis.baseline = std::move(arx);
+  signals = std::move(allowed);
+  if (slow) {
+    diagnosis.notes.emplace_back(
+        "the body is slow: a mode of it may ring for half of the recording, and a level stays");
+  }
 }
 
 }  // namespace stillhand::diagnosis

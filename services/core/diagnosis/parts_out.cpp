@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "services/core/diagnosis/fitting/held_out.hpp"
@@ -18,6 +19,7 @@ namespace {
 constexpr std::size_t kThirds = 3;  // of a single recording
 constexpr double kHelps = 0.01;     // of an error, as SearchOptions::least_fall
 constexpr int kIterations = 30;
+constexpr double kLeastNoise = 1e-9;     // of the output
 constexpr double kClearlyLower = 0.999;  // of the error of a fit that did not stop short
 
 // Each part is whole: thirds of a recording, or the recordings that were joined.
@@ -50,6 +52,25 @@ Model bare_of_terms(const Model& model) {
   return bare;
 }
 
+// What a run's first rows depend on: Eq. DG-54 looks a second ahead.
+std::vector<Stretch> heads_of(const Signals& signals, std::size_t given) {
+  const std::size_t length = std::max(given, static_cast<std::size_t>(signals.rate_hz()) + 1);
+  std::vector<Stretch> heads = signals.stretches();
+  for (Stretch& head : heads) head.end = std::min(head.end, head.first + length);
+  return heads;
+}
+
+// The first rows of each stretch.
+GivenRows first_rows(const Signals& signals, std::size_t given) {
+  GivenRows rows;
+  for (const Stretch& stretch : signals.stretches()) {
+    const std::size_t count = std::min(given, stretch.end - stretch.first);
+    rows.emplace_back(count);
+    std::iota(rows.back().begin(), rows.back().end(), stretch.first);
+  }
+  return rows;
+}
+
 // The numbers of its effects are as many as the body's order says.
 bool is_bound_to_order(const Model& model) {
   return passes_through_body(model) || std::ranges::any_of(model.effects, [](const Effect& effect) {
@@ -68,43 +89,84 @@ bool has_body_of_baseline(const Model& model, const Signals& signals) {
   return !model.effects.empty() && !passes_through_body(model) &&
          std::ranges::all_of(model.effects, [&](const Effect& effect) {
            const EffectKind& kind = effect_kind(effect.kind);
-           return scales_body(effect) ||
-                  (kind.stage(effect) == Stage::kTerm && kind.own_poles(effect, signals).empty());
+           return scales_body(effect) || (kind.stage(effect) == Stage::kTerm &&
+                                          kind.own_poles(effect, signals.rate_hz()).empty());
          });
 }
 
 PartsOut::PartsOut(const Model& found, const Signals& signals, const Blocks& blocks,
-                   const Eigen::VectorXd& noise, double rms)
+                   const Eigen::VectorXd& noise, double rms, std::size_t given)
     : signals_(signals),
       blocks_(blocks),
       paths_(found, signals, rms),
       parts_(by_part(blocks, signals)),
       apart_(signals.restarted(borders_of(parts_)).whitened(whitening_taps(noise, signals))),
-      with_pasts_(apart_.with_pasts()) {}
+      with_pasts_(apart_.with_pasts()),
+      heads_(apart_.cut_to(heads_of(apart_, given))),
+      given_(first_rows(heads_, given)) {}
 
 OutOfParts PartsOut::left_by(const Model& model) const {
-  OutOfParts out{true, Eigen::VectorXd::Zero(std::ssize(signals_.weight()))};
+  const auto size = std::ssize(signals_.weight());
+  OutOfParts out{true, Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size)};
+  const auto& measured = apart_.output().values;
   for (std::size_t part = 0; part < parts_.folds; ++part) {
-    const FreeRun run = free_run(fitted_without(part, model), with_pasts_);
-    if (!run.finite) return {};
-    const std::vector<double> prediction = apart_.without_pasts(run.prediction);
+    const Fitted fitted = fitted_without(part, model);
+    const FreeRun rested = free_run(fitted.model, with_pasts_);
+    const FreeRun started = run_from_start(fitted.model, fitted.rmse);
+    if (!rested.finite || !started.finite) return {};
+    const std::vector<double> prediction = apart_.without_pasts(rested.prediction);
     for (std::size_t n = 0; n < prediction.size(); ++n) {
       if (parts_.fold_of(n / parts_.length) != part) continue;
-      out.residual[static_cast<Eigen::Index>(n)] =
-          signals_.weight()[n] * (apart_.output().values[n] - prediction[n]);
+      const auto at = static_cast<Eigen::Index>(n);
+      out.residual[at] = signals_.weight()[n] * (measured[n] - prediction[n]);
+      out.started[at] = signals_.weight()[n] * (measured[n] - started.prediction[n]);
     }
+  }
+  for (std::size_t s = 0; s < given_.size(); ++s) {
+    out.started
+        .segment(static_cast<Eigen::Index>(apart_.stretches()[s].first), std::ssize(given_[s]))
+        .setZero();
   }
   return out;
 }
+
+FreeRun PartsOut::run_from_start(const Model& model, double noise) const {
+  const auto states = most_likely_start(
+      model, heads_, spread_of(model, apart_), heads_.output().values, given_,
+      std::max(noise, kLeastNoise * apart_.output().deviation),
+      [&](const Signals& signals) { return free_run(model, signals).prediction; });
+  return free_run(model, started(model, apart_, states));
+}
+
+// A body that holds a level says nothing from a past that it does not know.
+const Eigen::VectorXd& PartsOut::judged(const OutOfParts& out) const {
+  return signals_.slow_poles() ? out.started : out.residual;
+}
+
 double PartsOut::rmse(const Model& model) const {
   const OutOfParts out = left_by(model);
   if (!out.finite) return std::numeric_limits<double>::infinity();
-  return out.residual.norm() / std::sqrt(std::max(sum_of(signals_.weight()), 1.0));
+  return judged(out).norm() / std::sqrt(std::max(sum_of(signals_.weight()), 1.0));
+}
+
+HeldOut PartsOut::from_start(const Model& model) const {
+  const OutOfParts out = left_by(model);
+  HeldOut by_block;
+  by_block.finite = out.finite;
+  by_block.squares.assign(parts_.count, out.finite ? 0.0 : HUGE_VAL);
+  by_block.weights.assign(parts_.count, 0.0);
+  for (std::size_t n = 0; n < signals_.size(); ++n) {
+    const std::size_t block = n / parts_.length;
+    by_block.weights[block] += signals_.weight()[n];
+    if (out.finite)
+      by_block.squares[block] += std::pow(out.started[static_cast<Eigen::Index>(n)], 2);
+  }
+  return by_block;
 }
 
 double PartsOut::slow_share(const OutOfParts& without, const OutOfParts& with) const {
   const double period = apart_.rate_hz() / apart_.lowest_excited_hz();
-  return diagnosis::slow_share(without.residual - with.residual, apart_.stretches(),
+  return diagnosis::slow_share(judged(without) - judged(with), apart_.stretches(),
                                static_cast<std::size_t>(period));
 }
 
@@ -112,13 +174,17 @@ Share PartsOut::share(const OutOfParts& without, const OutOfParts& with) const {
   if (!with.finite) return {};
   if (!without.finite) return {.estimate = 1.0};
   if (several() && !helps_one(without, with)) return {};
-  Eigen::MatrixXd columns(without.residual.size(), 2);
-  columns << without.residual, without.residual - with.residual;
+  Eigen::MatrixXd columns(judged(without).size(), 2);
+  columns << judged(without), judged(without) - judged(with);
   const Share plain = share_of(columns.col(0), columns.col(1), parts_);
   apart_.whiten(columns, signals_.weight());
   Share share = share_of(columns.col(0), columns.col(1), parts_);
   if (plain.std_error < share.std_error) share = plain;
-  share.harmless = plain.harmless;  // the error that counts in the end
+  // The error that counts in the end, from either start.
+  for (const auto start : {&OutOfParts::residual, &OutOfParts::started}) {
+    share.harmless = std::min(
+        share.harmless, share_of(without.*start, without.*start - with.*start, parts_).harmless);
+  }
   return share;
 }
 
@@ -154,10 +220,10 @@ Model PartsOut::refitted(Model model, const Body& other) const {
 bool PartsOut::helps_one(const OutOfParts& without, const OutOfParts& with) const {
   std::vector<double> before(parts_.folds, 0.0);
   std::vector<double> after(parts_.folds, 0.0);
-  for (Eigen::Index n = 0; n < without.residual.size(); ++n) {
+  for (Eigen::Index n = 0; n < judged(without).size(); ++n) {
     const std::size_t part = parts_.fold_of(static_cast<std::size_t>(n) / parts_.length);
-    before[part] += without.residual[n] * without.residual[n];
-    after[part] += with.residual[n] * with.residual[n];
+    before[part] += std::pow(judged(without)[n], 2);
+    after[part] += std::pow(judged(with)[n], 2);
   }
   for (std::size_t part = 0; part < parts_.folds; ++part) {
     if (std::sqrt(after[part]) < (1.0 - kHelps) * std::sqrt(before[part])) return true;
@@ -175,17 +241,20 @@ Signals PartsOut::without_part(std::size_t part) const {
 
 // With its ranges, from terms that weigh nothing, or from the model's own numbers where that ends
 // clearly lower: from nothing a fit may stop short.
-Model PartsOut::fitted_without(std::size_t part, const Model& model) const {
+PartsOut::Fitted PartsOut::fitted_without(std::size_t part, const Model& model) const {
   FitOptions options;
   options.max_iterations = kIterations;
   options.prior = prior_of(model);
   options.without_fold = static_cast<int>(part);
   Model bare = bare_of_terms(model);
-  Model own = model;
-  const double from_nothing = fit(bare, signals_, parts_, options).rmse;
-  const double from_own = fit(own, signals_, parts_, options).rmse;
-  Model& best = from_own < kClearlyLower * from_nothing ? own : bare;
-  note_seen(best, without_part(part));
+  const bool has_terms = packed(bare) != packed(model);
+  Fitted best{model, 0.0};
+  best.rmse = fit(best.model, signals_, parts_, options).rmse;
+  if (has_terms) {
+    const double from_nothing = fit(bare, signals_, parts_, options).rmse;
+    if (!(best.rmse < kClearlyLower * from_nothing)) best = {std::move(bare), from_nothing};
+  }
+  note_seen(best.model, without_part(part));
   return best;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/excited_band.hpp"
@@ -234,9 +235,15 @@ Signals Signals::with_slow_poles() const {
   return other;
 }
 
-Signals Signals::with_start(std::vector<double> state) const {
+Signals Signals::starting_by(std::vector<bool> rows) const {
   Signals other = *this;
-  other.start_ = std::move(state);
+  other.start_rows_ = std::move(rows);
+  return other;
+}
+
+Signals Signals::with_start(Columns states) const {
+  Signals other = *this;
+  other.start_ = std::move(states);
   return other;
 }
 
@@ -253,6 +260,32 @@ Signals Signals::restarted(const std::vector<std::size_t>& at) const {
       stretch.start_s = time_s_[first];
     }
     other.stretches_.push_back(stretch);
+  }
+  other.leave_starts_unjudged();
+  return other;
+}
+
+Signals Signals::cut_to(const std::vector<Stretch>& pieces) const {
+  Signals other = *this;
+  const auto cut = [&](std::vector<double>& values) {
+    std::vector<double> kept;
+    for (const Stretch& piece : pieces) {
+      kept.insert(kept.end(), values.begin() + static_cast<std::ptrdiff_t>(piece.first),
+                  values.begin() + static_cast<std::ptrdiff_t>(piece.end));
+    }
+    values = std::move(kept);
+  };
+  cut(other.weight_);
+  cut(other.time_s_);
+  cut(other.output_.values);
+  for (auto* list : {&other.inputs_, &other.all_}) {
+    for (Signal& signal : *list) cut(signal.values);
+  }
+  other.stretches_.clear();
+  std::size_t end = 0;
+  for (const Stretch& piece : pieces) {
+    const std::size_t first = std::exchange(end, end + piece.end - piece.first);
+    other.stretches_.push_back({first, end, time_s_[piece.first], piece.recording});
   }
   other.leave_starts_unjudged();
   return other;

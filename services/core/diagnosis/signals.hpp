@@ -64,12 +64,19 @@ class Signals {
   /// The same signals for bodies that ring for long, Eq. DG-66.
   [[nodiscard]] Signals with_slow_poles() const;
   [[nodiscard]] bool slow_poles() const noexcept { return slow_poles_; }
-  /// The same signals, a body over them in this state before a stretch, Eq. DG-82.
-  /// @param state  e, one a sample, that A y_b = B u has on its right, [unit of the output]
-  [[nodiscard]] Signals with_start(std::vector<double> state) const;
-  [[nodiscard]] const std::vector<double>& start() const noexcept { return start_; }
+  /// The same signals, slow free responses (Eq. DG-66) fitted to the rows with true alone.
+  [[nodiscard]] Signals starting_by(std::vector<bool> rows) const;
+  /// Empty: all rows.
+  [[nodiscard]] const std::vector<bool>& start_rows() const noexcept { return start_rows_; }
+  /// The same signals, a model over them in this state before a stretch, Eq. DG-82.
+  /// @param states  one a sample [unit of the output]: e, that A y_b = B u has on its right; then,
+  /// by effect, the same of a term with poles of its own, or nothing
+  [[nodiscard]] Signals with_start(Columns states) const;
+  [[nodiscard]] const Columns& start() const noexcept { return start_; }
   /// The same signals, a stretch beginning at each of these samples too.
   [[nodiscard]] Signals restarted(const std::vector<std::size_t>& at) const;
+  /// These rows of the same signals, each of them a stretch.
+  [[nodiscard]] Signals cut_to(const std::vector<Stretch>& pieces) const;
   /// The same signals, each stretch with a past of up to 10 s, Eq. DG-60: its own beginning in
   /// reverse, whose swing fades within 1 s to the level of Eq. DG-54.  It weighs nothing.  Times
   /// move on by the pasts, so that stretches don't overlap.
@@ -111,7 +118,8 @@ class Signals {
   std::vector<Stretch> stretches_;
   std::vector<double> weight_;
   std::vector<double> whitening_;
-  std::vector<double> start_;  ///< empty: the steady start of Eq. DG-54
+  std::vector<bool> start_rows_;
+  Columns start_;  ///< empty: the steady start of Eq. DG-54
   std::vector<double> time_s_;
   Signal output_;
   std::vector<Signal> inputs_;

@@ -66,17 +66,37 @@ TEST(DynamicTermsTest, AModeIsItsRecursionAndItsDifference) {
 // A mode rings for 1/(2 pi f z) s.  The record has 4.493 s, an eighth of it 0.5616 s.
 TEST(DynamicTermsTest, AModeThatRingsThroughTheRecordHasNoFreeResponse) {
   const Signals signals = wandering();
-  const auto poles_of = [&](double damping_ratio) {
-    const Effect effect{
-        "resonance", "", {}, {{"frequency", "Hz", 2.0}, {"damping", "-", damping_ratio}}, {}};
-    return effect_kind("resonance").own_poles(effect, signals);
+  const auto ringing_left = [&](double damping_ratio) {
+    Model model = made::model_of({{{1.0}}, {1.0}, 0.0});
+    model.effects = {
+        {"resonance", "", {}, {{"frequency", "Hz", 2.0}, {"damping", "-", damping_ratio}}, {}}};
+    std::vector<double> pulse(signals.size(), 0.0);
+    pulse[signals.stretches().front().first] = 1.0;
+    const auto ringing = through_poles(pulse, mode_denominator(2.0, damping_ratio, made::kRateHz),
+                                       signals.stretches());
+    const std::vector<double> weight(signals.size(), 1.0);
+    const Eigen::Map<const Eigen::VectorXd> column(ringing.data(), std::ssize(ringing));
+    const Eigen::VectorXd part = InitialStates(model, signals, weight).part_of(column);
+    return (column - part).norm() / column.norm();
   };
   const double least = 1.0 / (kTwoPi * 2.0 * 0.125 * signals.duration_s());
-  EXPECT_TRUE(poles_of(0.99 * least).empty());
-  EXPECT_EQ(poles_of(1.01 * least), mode_denominator(2.0, 1.01 * least, made::kRateHz));
-  EXPECT_TRUE(effect_kind("tone")
-                  .own_poles({"tone", "", {}, {{"frequency", "Hz", 2.0}}, {}}, signals)
-                  .empty());
+  EXPECT_DOUBLE_EQ(ringing_left(0.99 * least), 1.0);
+  EXPECT_LT(ringing_left(1.01 * least), 2e-3);  // it counts until it has decayed to 1e-3
+}
+
+// A level in the last quarter alone: what it says of the start counts where its rows may.
+TEST(DynamicTermsTest, ALevelThatLastsIsFittedToTheRowsThatMaySay) {
+  const Signals slow = wandering().with_slow_poles();
+  const std::size_t last = 3 * slow.size() / 4;
+  Eigen::VectorXd column = Eigen::VectorXd::Zero(std::ssize(slow.weight()));
+  column.tail(std::ssize(slow.weight()) - static_cast<Eigen::Index>(last)).setOnes();
+  std::vector<bool> rows(slow.size(), true);
+  std::fill(rows.begin() + static_cast<std::ptrdiff_t>(last), rows.end(), false);
+  const Body body{{{0.0, 1.0}}, {1.0, -std::exp(-1e-3 / static_cast<double>(slow.size()))}, 0.0};
+  const std::vector<double> weight(slow.size(), 1.0);
+  EXPECT_GT(InitialStates(body, slow, weight).part_of(column).norm(), 0.4 * column.norm());
+  EXPECT_LT(InitialStates(body, slow.starting_by(rows), weight).part_of(column).norm(),
+            1e-9 * column.norm());
 }
 
 TEST(DynamicTermsTest, ASmoothSignIsHalfwayAtItsTransition) {

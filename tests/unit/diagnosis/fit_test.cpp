@@ -362,5 +362,23 @@ TEST(FitTest, HeldOutErrorIsAboveTheFitsOwn) {
   EXPECT_NEAR(sut / own, std::sqrt((1.0 + 61.0 / 720.0) / (1.0 - 61.0 / 900.0)), 0.03);
 }
 
+// The data want a pole that decays in 50 s, the bound allows 2 s: each step would lead out.
+TEST(FitTest, NextToAPoleOnItsBoundTheOtherNumbersMove) {
+  const Model truth = made::model_of({{{0.0, 0.05}}, {1.0, -std::exp(-0.01 / 50.0)}, 0.0});
+  const Signals signals = signals_of(output_of(truth));
+  const Blocks blocks = make_blocks(signals);
+  Model sut = truth;
+  sut.body.largest_radius = sut.body.slowest_radius = std::exp(-0.01 / 2.0);
+  stabilise(sut.body);
+  FitOptions options;
+  options.without_fold = 0;
+  options.max_iterations = 1;
+  const double before = fit(sut, signals, blocks, options).rmse;
+  options.max_iterations = 4;
+  EXPECT_LT(fit(sut, signals, blocks, options).rmse, 0.999 * before);
+  EXPECT_TRUE(is_stable(sut.body));
+  EXPECT_EQ(radii_on_bound(sut).size(), 1U);
+}
+
 }  // namespace
 }  // namespace stillhand::diagnosis

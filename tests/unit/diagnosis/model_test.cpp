@@ -239,5 +239,33 @@ TEST(ModelTest, EveryKindPacksWhatIsFittedAndComesBackBitForBit) {
   }
 }
 
+// A pair of poles on its bound next to one that decays quickly: the radius is that of the pair, and
+// its change by each number is that of a small step.
+TEST(ModelTest, ThePolesOnTheirBoundSayHowTheyLeaveIt) {
+  Model model =
+      made::model_of({{{1.0, 0.0, 0.0, 0.0}}, made::times(made::mode(3.0, 0.1), {1.0, -0.5}), 0.0});
+  const auto radius_of = [](const Model& each) {
+    double largest = 0.0;
+    for (const auto& pole : signal::poles({1.0, each.body.denominator, each.body.denominator})) {
+      largest = std::max(largest, std::abs(pole));
+    }
+    return largest;
+  };
+  EXPECT_TRUE(radii_on_bound(model).empty());
+  model.body.largest_radius = radius_of(model);
+  const auto radii = radii_on_bound(model);
+  ASSERT_EQ(radii.size(), 1U);
+  const Eigen::VectorXd numbers = packed(model);
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
+    constexpr double kStep = 1e-6;
+    Model moved = model;
+    Eigen::VectorXd other = numbers;
+    other[i] += kStep;
+    unpack(other, moved);
+    // The second derivative is of the size of one over the distance of the poles, some 10.
+    EXPECT_NEAR((radius_of(moved) - radius_of(model)) / kStep, radii[0][i], 1e-4) << i;
+  }
+}
+
 }  // namespace
 }  // namespace stillhand::diagnosis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. DG-82: a body that is not at rest when its recording begins.
-#include "apps/predict/start_state.hpp"
+#include "services/core/diagnosis/start_state.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "apps/predict/judgement.hpp"
+#include "apps/predict/predict.hpp"
+#include "services/core/diagnosis/fitting/modes.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
@@ -73,6 +75,33 @@ TEST(StartStateTest, EveryStretchHasItsOwn) {
   }
   EXPECT_LT(largest_miss(measurement, stillhand::predict::predict(model, measurement, kGiven)),
             3.0 * kNoise);
+}
+
+// A mode next to the body, with poles of its own: it rings for 2.7 s.
+TEST(StartStateTest, AModeNextToTheBodyGoesOnFromThereToo) {
+  const std::vector<double> mode = diagnosis::mode_denominator(12.0, 0.005, 100.0);
+  const auto u = made::white(kBefore + 600, 9);
+  auto y = made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, u);
+  const auto ringing = made::answer({0.02}, mode, u);
+  for (std::size_t n = 0; n < y.size(); ++n) y[n] += ringing[n];
+  const auto end_of = [](const std::vector<double>& x) {
+    return std::vector<double>(x.begin() + kBefore, x.end());
+  };
+  const Measurement measurement =
+      made::measurement_of({{"u", "V", end_of(u)}, {"y", "N", end_of(y)}});
+  Model model = made::model_of(
+      made::two_pole_body(),
+      {{"resonance",
+        "beside the body",
+        {},
+        {{"frequency", "Hz", 12.0, 0.15, 40.0}, {"damping_ratio", "-", 0.005, 0.003, 0.95}},
+        {0.0, 0.02}}});
+  model.heldout_rmse = kNoise;
+  const auto carried = diagnosis::carried_as_it_is(model);
+  EXPECT_LT(largest_miss(measurement, stillhand::predict::predict(carried, measurement, kGiven)),
+            3.0 * kNoise);
+  EXPECT_GT(largest_miss(measurement, stillhand::predict::predict(carried, measurement)),
+            20.0 * kNoise);
 }
 
 // A spring inside the body, y(n) = 0.998 y(n-1) + 0.05 u(n-1) - 0.001 y(n-1)^3, begun at 3 N.
@@ -141,7 +170,7 @@ TEST(StateSpreadTest, OfOnePoleIsTheSquareOfItsState) {
   const std::vector<double> u{1.0, 0.0, -1.0, 2.0};
   const std::vector<double> y{3.0, 1.0, 5.0, 0.0};
   // 2 u + 0.5 y: 3.5, 0.5, 0.5 before samples 1 to 3.
-  EXPECT_DOUBLE_EQ(state_spread(body, {u}, y, {{0, 4, 0.0}})(0, 0), (9.0 + 9.0) / 3.0);
+  EXPECT_DOUBLE_EQ(diagnosis::state_spread(body, {u}, y, {{0, 4, 0.0}})(0, 0), (9.0 + 9.0) / 3.0);
 }
 
 }  // namespace

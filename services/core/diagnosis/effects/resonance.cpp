@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/fitting/modes.hpp"
@@ -34,12 +33,8 @@ class Resonance final : public EffectKind {
       columns.push_back(std::move(x.values));
     }
   }
-  // A mode that rings on through the record would take a tone for its free response.
-  [[nodiscard]] std::vector<double> own_poles(const Effect& effect,
-                                              const Signals& signals) const override {
-    const double ringing_s = 1.0 / (2.0 * std::numbers::pi * effect.value(0) * effect.value(1));
-    if (ringing_s > kLongestRinging * signals.duration_s()) return {};
-    return mode_denominator(effect.value(0), effect.value(1), signals.rate_hz());
+  [[nodiscard]] std::vector<double> own_poles(const Effect& effect, double rate_hz) const override {
+    return mode_denominator(effect.value(0), effect.value(1), rate_hz);
   }
   [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
     return control::Mode{effect.value(0), effect.value(1)};

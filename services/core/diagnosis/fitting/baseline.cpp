@@ -272,17 +272,18 @@ Baseline fit_baseline(const Signals& signals, const Blocks& blocks, int order) {
   baseline.equation_error_rmse = std::sqrt(residual_of(work, signals, run).squaredNorm() /
                                            static_cast<double>(signals.size()));
   fit_order(impulse_response, signals, blocks, order, baseline);
-  if (!signals.slow_poles()) {
-    for (int p = order; p > 1 && !determined(baseline.model, signals, blocks); --p) {
-      fit_order(impulse_response, signals, blocks, p - 1, baseline);
-    }
-    return baseline;
+  // A slow body's order is chosen by how it goes on from a start state, Eq. DG-66.
+  if (signals.slow_poles()) return baseline;
+  for (int p = order; p > 1 && !determined(baseline.model, signals, blocks); --p) {
+    fit_order(impulse_response, signals, blocks, p - 1, baseline);
   }
+  if (radii_on_bound(baseline.model).empty()) return baseline;
+  // Next to a pole that its bound holds back, more poles may explain less.
+  double least = held_out(baseline.model, signals, blocks).rmse();
   Baseline lower = baseline;
-  double least = linearised_rmse(baseline.model, signals, blocks);
-  for (int p = order; p > 1; --p) {
+  for (int p = static_cast<int>(baseline.model.body.order()); p > 1; --p) {
     fit_order(impulse_response, signals, blocks, p - 1, lower);
-    const double rmse = linearised_rmse(lower.model, signals, blocks);
+    const double rmse = held_out(lower.model, signals, blocks).rmse();
     if (!(rmse < least)) continue;
     least = rmse;
     baseline = lower;

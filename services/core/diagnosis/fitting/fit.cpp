@@ -8,12 +8,15 @@
 #include <optional>
 
 #include "services/core/diagnosis/model/model_run.hpp"
+#include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
 // Keeps a direction that the data doesn't determine from blowing up; relative to the diagonal.
 constexpr double kRidge = 1e-11;
+// Of a direction that is held, relative to the others' squares.
+constexpr double kHeld = 1e8;
 
 double squared_error(const Eigen::MatrixXd& gram) { return gram(gram.rows() - 1, gram.cols() - 1); }
 
@@ -36,10 +39,17 @@ class Compressed {
 
   Compressed(Model& model, const Signals& signals, const Blocks& blocks, const FitOptions& options)
       : model_(model), signals_(signals), blocks_(blocks), options_(options) {
+    const bool stable = is_stable(model.body);
     start_ = packed(model);
-    Eigen::MatrixXd gram =
-        options.at_start != nullptr ? total(*options.at_start, model) : gram_at(start_);
-    const bool finite = options.at_start != nullptr || accepted_->finite();
+    unpack(start_, model);
+    if (stable && !is_stable(model.body)) {
+      // A pole on its bound, rounded out of it.
+      stabilise(model.body);
+      start_ = packed(model);
+    }
+    const bool known = options.at_start != nullptr && signals.start_rows().empty();
+    Eigen::MatrixXd gram = known ? total(*options.at_start, model) : gram_at(start_);
+    const bool finite = known || accepted_->finite();
     before_ = finite ? squared_error(gram) : kNotFinite;
     if (const double step = offset_step(gram); step != 0.0) {
       start_[0] += step;
@@ -52,6 +62,7 @@ class Compressed {
     unit_ = std::sqrt(std::max(squared_error(gram), 1e-300));
     if (!finite) before_ *= unit_ * unit_;
     first_ = gram;
+    if (finite && options.without_fold >= 0) hold_poles_on_bound();
   }
 
   [[nodiscard]] int NumResiduals() const { return static_cast<int>(start_.size()) + 1; }
@@ -81,6 +92,9 @@ class Compressed {
       gram.col(i) /= scale_[i];
       gram(i, i) *= 1.0 + kRidge;
     }
+    for (const Eigen::VectorXd& held : held_) {
+      gram.topLeftCorner(count, count) += kHeld * held * held.transpose();
+    }
     gram.row(count) /= unit_;
     gram.col(count) /= unit_;
     gram(count, count) *= 1.0 + kRidge;
@@ -109,6 +123,11 @@ class Compressed {
     const Point& point = point_at(numbers);
     return point.finite() ? point.error : kNotFinite * unit_ * unit_;
   }
+  void place(const Eigen::VectorXd& numbers, Model& model) const {
+    unpack(numbers, model);
+    // Along its bound a pole moves on a curve.
+    if (!held_.empty() && !is_stable(model.body)) stabilise(model.body);
+  }
   // With columns if the options ask for them.
   [[nodiscard]] Point taken_at(const Eigen::VectorXd& numbers) const {
     return std::move(options_.grams_at_end ? with_columns(numbers) : point_at(numbers));
@@ -126,6 +145,26 @@ class Compressed {
     return most ? product / gram(0, 0) : 0.0;
   }
 
+  // A refit without a fold has few steps, and begins at the end of the fit to all.  A pole on its
+  // bound that the data push out would have each of them refused: it stays there, and the other
+  // numbers move.
+  void hold_poles_on_bound() {
+    const Eigen::Index count = start_.size();
+    unpack(start_, model_);
+    std::vector<Eigen::VectorXd> radii = radii_on_bound(model_);
+    if (radii.empty()) return;
+    Eigen::MatrixXd normal = scale_.cwiseInverse().asDiagonal() *
+                             first_.topLeftCorner(count, count) *
+                             scale_.cwiseInverse().asDiagonal();
+    normal.diagonal().array() += kRidge;
+    const Eigen::VectorXd step =
+        signal::solve_symmetric(normal, first_.col(count).head(count).cwiseQuotient(scale_));
+    for (const Eigen::VectorXd& radius : radii) {
+      const Eigen::VectorXd scaled = radius.cwiseQuotient(scale_);
+      if (scaled.dot(step) > 0.0) held_.push_back(scaled.normalized());
+    }
+  }
+
   [[nodiscard]] Eigen::MatrixXd total(const Grams& grams, const Model& model) const {
     Eigen::MatrixXd gram = grams.total(blocks_, options_.without_fold);
     if (options_.prior != nullptr) options_.prior->add(model, gram);
@@ -136,7 +175,7 @@ class Compressed {
     for (std::optional<Point>* each : {&tried_, &accepted_}) {
       if (*each && (*each)->numbers == numbers) return **each;
     }
-    unpack(numbers, model_);
+    place(numbers, model_);
     tried_.emplace(Point{numbers, evaluated(model_, signals_), 0.0, {}});
     const Eigen::VectorXd& residual = tried_->evaluation.residual;
     const auto length = static_cast<Eigen::Index>(blocks_.length);
@@ -155,7 +194,7 @@ class Compressed {
     const Point& point = point_at(numbers);
     if (tried_ && &point == &*tried_) accepted_.swap(tried_);
     if (accepted_->finite() && !accepted_->grams) {
-      unpack(numbers, model_);
+      place(numbers, model_);
       const Evaluation& at = accepted_->evaluation;
       accepted_->grams =
           grams_of(jacobian_of(model_, signals_, at), at.residual, at.run.free.weight, blocks_);
@@ -166,7 +205,7 @@ class Compressed {
   [[nodiscard]] Eigen::MatrixXd gram_at(const Eigen::VectorXd& numbers) const {
     const Point& point = with_columns(numbers);
     if (point.grams) {
-      unpack(numbers, model_);
+      place(numbers, model_);
       return total(*point.grams, model_);
     }
     const Eigen::Index size = numbers.size() + 1;
@@ -182,6 +221,7 @@ class Compressed {
   double unit_ = 1.0;
   double before_ = 0.0;
   Eigen::MatrixXd first_;
+  std::vector<Eigen::VectorXd> held_;  // directions of the scaled numbers
   mutable int steps_ = 0;
   mutable std::optional<Point> tried_;     // the newest
   mutable std::optional<Point> accepted_;  // the newest of which the solver wanted the columns
@@ -195,10 +235,21 @@ double weight_outside(const std::vector<double>& weight, const Blocks& blocks, i
   return std::max(sum, 1.0);
 }
 
+std::vector<bool> rows_outside(const Signals& signals, const Blocks& blocks, int fold) {
+  std::vector<bool> rows(signals.size());
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    rows[n] = static_cast<int>(blocks.fold_of(n / blocks.length)) != fold;
+  }
+  return rows;
+}
+
 }  // namespace
 
-FitResult fit(Model& model, const Signals& signals, const Blocks& blocks,
-              const FitOptions& options) {
+FitResult fit(Model& model, const Signals& all, const Blocks& blocks, const FitOptions& options) {
+  const bool lasts = options.without_fold >= 0 && all.slow_poles();
+  std::optional<Signals> own;
+  if (lasts) own = all.starting_by(rows_outside(all, blocks, options.without_fold));
+  const Signals& signals = own ? *own : all;
   Model work = model;
   Compressed problem(work, signals, blocks, options);
   FitResult result;
@@ -213,7 +264,7 @@ FitResult fit(Model& model, const Signals& signals, const Blocks& blocks,
   Eigen::VectorXd numbers = problem.numbers_at(x);
   double error = problem.error_at(numbers);
   if (error < problem.error_before()) {
-    unpack(numbers, model);
+    problem.place(numbers, model);
   } else {
     error = problem.error_before();
     numbers = packed(model);

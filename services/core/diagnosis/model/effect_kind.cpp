@@ -54,8 +54,7 @@ std::string EffectKind::column_unit(const Effect& /*effect*/, const Signals& /*s
 bool EffectKind::through_body(const Effect& effect) const {
   return effect.form.find("through the body") != std::string::npos;
 }
-std::vector<double> EffectKind::own_poles(const Effect& /*effect*/,
-                                          const Signals& /*signals*/) const {
+std::vector<double> EffectKind::own_poles(const Effect& /*effect*/, double /*rate_hz*/) const {
   return {};
 }
 void EffectKind::weigh(const Effect& /*effect*/, const Signals& /*signals*/,

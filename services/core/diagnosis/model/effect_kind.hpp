@@ -95,9 +95,8 @@ class EffectKind {
   /// kTerm: each column passes the body's poles with order + 1 coefficients, instead of one factor.
   [[nodiscard]] virtual bool through_body(const Effect& effect) const;
   /// kTerm: poles that it filters its columns with, as a denominator 1, m_1, .. whose free response
-  /// at a stretch's start is fitted as the body's is, Eq. DG-10; empty: none.
-  [[nodiscard]] virtual std::vector<double> own_poles(const Effect& effect,
-                                                      const Signals& signals) const;
+  /// at a stretch's start is fitted as the body's is, Eq. DG-10 and DG-82; empty: none.
+  [[nodiscard]] virtual std::vector<double> own_poles(const Effect& effect, double rate_hz) const;
   /// kWeight: sets the weight of samples that the model does not claim to explain to 0.
   virtual void weigh(const Effect& effect, const Signals& signals, std::span<double> weight) const;
 };

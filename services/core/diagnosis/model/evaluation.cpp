@@ -79,8 +79,8 @@ void run_linear_body(const Model& model, const Signals& signals, ModelRun& run) 
                     signals.stretches(), body);
   }
   if (!signals.start().empty()) {
-    add_scaled(through_poles(signals.start(), model.body.denominator, signals.stretches()), 1.0,
-               body.values);
+    add_scaled(through_poles(signals.start().front(), model.body.denominator, signals.stretches()),
+               1.0, body.values);
   }
   run.free.body = std::move(body.values);
   run.body_before = std::move(body.before);
@@ -91,6 +91,22 @@ Body with_start(Body body) {
   body.numerators.emplace_back(body.order() + 1, 0.0);
   body.numerators.back().front() = 1.0;
   return body;
+}
+
+// With a start state as one input more.
+std::vector<Settled> reaching_all(const Model& model, const Signals& signals) {
+  std::vector<Settled> inputs;
+  for (std::size_t k = 0; k < model.inputs.size(); ++k) {
+    inputs.push_back(reaching(model, signals, k));
+  }
+  if (!signals.start().empty()) inputs.push_back(rested(signals.start().front(), signals));
+  return inputs;
+}
+
+// Whose number changes what reaches the body.
+bool is_before_body(const Model& model, std::size_t effect) {
+  const Effect& each = model.effects[effect];
+  return acts_at(each, Stage::kInputTime) || acts_at(each, Stage::kInputValue);
 }
 
 // Whose number changes what comes behind the body, not the body's output.
@@ -116,13 +132,14 @@ void run_bodies(std::span<const Model> models, const Signals& signals, std::span
       run_linear_body(models[i], signals, runs[i]);
       continue;
     }
-    for (std::size_t k = 0; k < models[i].inputs.size(); ++k) {
-      runs[i].inputs.push_back(reaching(models[i], signals, k));
+    if (known != nullptr && !(known->owners[i] && is_before_body(models[i], *known->owners[i]))) {
+      each.inputs = &known->run.inputs;
+    } else {
+      runs[i].inputs = reaching_all(models[i], signals);
     }
     if (!started.empty()) {
       started[i] = with_start(models[i].body);
       each.body = &started[i];
-      runs[i].inputs.push_back(rested(signals.start(), signals));
     }
     cases.push_back(std::move(each));
     with_loop.push_back(i);
@@ -187,6 +204,11 @@ void add_terms(const Model& model, const Signals& signals, const ModelRun* known
     }
     run.terms[e].assign(signals.size(), 0.0);
     weigh_columns(model, signals, columns, e, run);
+    if (!signals.start().empty() && !signals.start()[e + 1].empty()) {
+      add_scaled(through_poles(signals.start()[e + 1], kind.own_poles(effect, signals.rate_hz()),
+                               signals.stretches()),
+                 1.0, run.terms[e]);
+    }
     add_scaled(run.terms[e], 1.0, run.free.prediction);
   }
 }

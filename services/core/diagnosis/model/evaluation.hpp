@@ -54,6 +54,8 @@ Linearisation linearised(const Model& model, const Signals& signals);
 Eigen::VectorXd residual_of(const Model& model, const Signals& signals, FreeRun& run);
 
 /// Orthonormal free responses at the start of every stretch: removes them from a column, Eq. DG-10.
+/// Of slow ones each direction that has most of its power in Signals::start_rows() is fitted to
+/// these alone: a level that lasts through a fold is no knowledge of the fold.
 class InitialStates {
  public:
   InitialStates(const Body& body, const Signals& signals, const std::vector<double>& weight);
@@ -70,6 +72,7 @@ class InitialStates {
   struct Start {
     std::size_t first;
     Eigen::MatrixXd basis;  ///< [window x order], orthonormal
+    Eigen::MatrixXd dual;   ///< [window x order], by which its factors are taken
   };
   std::vector<Start> starts_;
 };

@@ -19,12 +19,11 @@ constexpr double kLongestShare = 0.25;  // of the record
 // A mode that decays within more than this has no fitted free response: it would be a tone's.
 constexpr double kLongestDecay = 0.125;  // of the record
 
-// The poles that decay soon enough, and those that hold a level, Eq. DG-66.
-std::vector<double> quick_poles(const std::vector<double>& denominator, const Signals& signals) {
+// The poles that decay soon enough, and those that turn less than that.
+std::vector<double> quick_poles(const std::vector<double>& denominator, const Signals& signals,
+                                double least_turn) {
   const double largest =
       std::exp(-1.0 / (kLongestDecay * signals.duration_s() * signals.rate_hz()));
-  const double least_turn =
-      2.0 * std::numbers::pi * signals.lowest_excited_hz() / signals.rate_hz();
   std::vector<std::complex<double>> polynomial{1.0};
   for (const std::complex<double>& pole : signal::poles({1.0, denominator, denominator})) {
     if (std::abs(std::arg(pole)) >= least_turn && std::abs(pole) > largest) continue;
@@ -37,16 +36,18 @@ std::vector<double> quick_poles(const std::vector<double>& denominator, const Si
   return quick;
 }
 
-// Without slow poles (Eq. DG-66) each is quick.
+// Without slow poles (Eq. DG-66) each is quick; of them, those that hold a level count.
 std::vector<double> quick_poles(const Body& body, const Signals& signals) {
-  return signals.slow_poles() ? quick_poles(body.denominator, signals) : body.denominator;
+  if (!signals.slow_poles()) return body.denominator;
+  return quick_poles(body.denominator, signals,
+                     2.0 * std::numbers::pi * signals.lowest_excited_hz() / signals.rate_hz());
 }
 
 std::vector<double> all_poles(const Model& model, const Signals& signals) {
   std::vector<double> denominator = quick_poles(model.body, signals);
   for (const Effect& effect : model.effects) {
-    const std::vector<double> own = effect_kind(effect.kind).own_poles(effect, signals);
-    if (!own.empty()) denominator = product(denominator, quick_poles(own, signals));
+    const std::vector<double> own = effect_kind(effect.kind).own_poles(effect, signals.rate_hz());
+    if (!own.empty()) denominator = product(denominator, quick_poles(own, signals, 0.0));
   }
   return denominator;
 }
@@ -83,6 +84,24 @@ class FreeResponses {
   std::vector<std::vector<double>> responses_;
 };
 
+// Turns an orthonormal basis so that its directions are orthogonal over these rows alone too, and
+// takes the factors from there where most of a direction's power lies there.
+void fit_outside(const std::vector<bool>& rows, const Stretch& stretch, Eigen::MatrixXd& basis,
+                 Eigen::MatrixXd& dual) {
+  constexpr double kMost = 0.5;
+  Eigen::MatrixXd there = basis;
+  for (Eigen::Index n = 0; n < there.rows(); ++n) {
+    if (!rows[stretch.first + static_cast<std::size_t>(n)]) there.row(n).setZero();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> power(there.transpose() * there);
+  basis *= power.eigenvectors();
+  there *= power.eigenvectors();
+  dual = basis;
+  for (Eigen::Index j = 0; j < basis.cols(); ++j) {
+    if (power.eigenvalues()[j] >= kMost) dual.col(j) = there.col(j) / power.eigenvalues()[j];
+  }
+}
+
 }  // namespace
 
 InitialStates::InitialStates(const Body& body, const Signals& signals,
@@ -113,15 +132,17 @@ InitialStates::InitialStates(const std::vector<double>& denominator, const Signa
     basis.array().colwise() *=
         Eigen::Map<const Eigen::ArrayXd>(weight.data() + stretch.first, length);
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
-    starts_.push_back(
-        {stretch.first, qr.householderQ() * Eigen::MatrixXd::Identity(length, basis.cols())});
+    basis = qr.householderQ() * Eigen::MatrixXd::Identity(length, basis.cols());
+    Eigen::MatrixXd dual = basis;
+    if (!signals.start_rows().empty()) fit_outside(signals.start_rows(), stretch, basis, dual);
+    starts_.push_back({stretch.first, std::move(basis), std::move(dual)});
   }
 }
 
 void InitialStates::remove_from(Eigen::Ref<Eigen::MatrixXd> columns) const {
   for (const Start& start : starts_) {
     auto rows = columns.middleRows(static_cast<Eigen::Index>(start.first), start.basis.rows());
-    rows -= start.basis * (start.basis.transpose() * rows).eval();
+    rows -= start.basis * (start.dual.transpose() * rows).eval();
   }
 }
 

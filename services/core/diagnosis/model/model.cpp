@@ -19,6 +19,22 @@ double bound_on(const std::complex<double>& pole, const Body& body) {
   return std::abs(std::arg(pole)) >= body.least_turn ? body.largest_radius : body.slowest_radius;
 }
 
+// Of the radius of a pole z by a_1 .. a_p: dz/da_k = -z^(p-k) / P'(z), P the polynomial in z.
+std::vector<double> radius_by_coefficients(const std::complex<double>& pole,
+                                           const std::vector<double>& denominator) {
+  const std::size_t order = denominator.size() - 1;
+  std::complex<double> slope = 0.0;
+  for (std::size_t k = 0; k < order; ++k) {
+    slope = slope * pole + denominator[k] * static_cast<double>(order - k);
+  }
+  std::vector<double> by(order);
+  std::complex<double> power = 1.0;
+  for (std::size_t k = order; k >= 1; --k, power *= pole) {
+    by[k - 1] = -(std::conj(pole) * power / slope).real() / std::abs(pole);
+  }
+  return by;
+}
+
 void append(const std::vector<double>& values, std::vector<double>& all) {
   all.insert(all.end(), values.begin(), values.end());
 }
@@ -57,6 +73,32 @@ bool is_near_bound(const Body& body) {
     // A decay within half of the time: the radius squared.
     return std::abs(pole) > std::pow(bound_on(pole, body), 2);
   });
+}
+
+std::vector<Eigen::VectorXd> radii_on_bound(const Model& model) {
+  constexpr double kOfDecay = 0.99;
+  const Body& body = model.body;
+  const std::size_t order = body.order();
+  const auto count = packed(model).size();
+  Eigen::Index first = 1;
+  for (const auto& numerator : body.numerators) first += std::ssize(numerator);
+  std::vector<Eigen::VectorXd> radii;
+  for (const auto& pole : signal::poles({1.0, body.denominator, body.denominator})) {
+    if (pole.imag() < 0.0 || std::abs(pole) < std::pow(bound_on(pole, body), 1.0 / kOfDecay)) {
+      continue;
+    }
+    const std::vector<double> by = radius_by_coefficients(pole, body.denominator);
+    radii.emplace_back(Eigen::VectorXd::Zero(count));
+    for (std::size_t i = 0; i < order; ++i) {
+      std::vector<double> one(order, 0.0);
+      one[i] = 1.0;
+      const std::vector<double> coefficients = difference_basis(one);
+      for (std::size_t k = 0; k < order; ++k) {
+        radii.back()[first + static_cast<Eigen::Index>(i)] += by[k] * coefficients[k];
+      }
+    }
+  }
+  return radii;
 }
 
 void stabilise(Body& body) {

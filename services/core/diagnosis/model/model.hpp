@@ -47,6 +47,10 @@ bool is_stable(const Body& body);
 /// hold it back, Eq. DG-66.
 bool is_near_bound(const Body& body);
 
+/// For each pole on its bound (its decay lasts for 0.99 of the time that is allowed, or more) how
+/// its radius changes with the fitted numbers, in packed()'s order; a pair of poles counts once.
+std::vector<Eigen::VectorXd> radii_on_bound(const Model& model);
+
 /// The poles that is_stable() would refuse, mirrored into the unit circle, then drawn in.
 void stabilise(Body& body);
 

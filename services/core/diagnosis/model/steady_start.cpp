@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/diagnosis/model/steady_start.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <numeric>
 
@@ -28,12 +29,12 @@ std::vector<double> start_levels(const std::vector<double>& x, const Signals& si
     const auto count = std::min(static_cast<std::size_t>(kSettled_s * signals.rate_hz()) + 1,
                                 stretch.end - stretch.first);
     const auto first = x.begin() + static_cast<std::ptrdiff_t>(stretch.first);
-    const double mean = std::accumulate(first, first + static_cast<std::ptrdiff_t>(count), 0.0) /
-                        static_cast<double>(count);
-    double swing = 0.0;  // its square
-    for (std::size_t n = stretch.first; n < stretch.first + count; ++n) {
-      swing += (x[n] - mean) * (x[n] - mean) / static_cast<double>(count);
-    }
+    const double mean =
+        Eigen::Map<const Eigen::ArrayXd>(&*first, static_cast<Eigen::Index>(count)).mean();
+    const double swing =  // its square
+        (Eigen::Map<const Eigen::ArrayXd>(&*first, static_cast<Eigen::Index>(count)) - mean)
+            .square()
+            .mean();
     const double beyond = mean * mean - swing;
     const double share = beyond > 0.0 ? std::min(beyond / (kClear * swing + 1e-300), 1.0) : 0.0;
     levels.push_back(share * mean);
