@@ -90,7 +90,7 @@ class Forward {
         blocks_(blocks),
         options_(options),
         progress_(progress),
-        impulse_response_(fit_impulse_response(signals)),
+        impulse_response_(fit_impulse_response(screened_part(signals))),
         settings_{blocks, impulse_response_, baseline.order, options, for_each} {}
 
   [[nodiscard]] SearchResult from_baseline() const {
@@ -147,7 +147,7 @@ class Forward {
         screened_trials(result.model, current.rmse(), signals_, settings_, Shapes::kNamed);
     std::optional<SearchResult> behind;
     if (!screened.trials.empty() && std::isfinite(screened.trials.front().rmse)) {
-      fit_first(screened, current.rmse(), signals_, settings_);
+      fit_first(screened, signals_, settings_);
       Signals whitened = judged_by(screened.trials.front().model);
       if (whitened.is_whitened()) {
         behind = refitted_behind(whitened, result);

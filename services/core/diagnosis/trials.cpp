@@ -9,11 +9,24 @@
 #include "services/core/diagnosis/fitting/screening.hpp"
 #include "services/core/diagnosis/fitting/shape_exchange.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
 constexpr double kNear = 1.35;  // of the best error: worth fitting to the end
+
+// What a round screens on.
+struct Part {
+  Part(const Signals& all, const RoundSettings& settings)
+      : is_whole(all.size() <= kMostScreened),
+        signals(screened_part(all)),
+        blocks(is_whole ? settings.blocks : make_blocks(signals)) {}
+
+  bool is_whole;
+  Signals signals;
+  Blocks blocks;
+};
 
 }  // namespace
 
@@ -49,30 +62,35 @@ bool same_shape(const Model& a, const Model& b) {
 // another that this has made the best.  The first may have hidden poles of a body whose order was
 // reduced.
 void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals& signals,
-                     const Blocks& blocks, int order, const SearchOptions& options,
-                     const ForEach& for_each) {
+                     const RoundSettings& settings) {
   constexpr double kWorthPoles = 0.99;  // of the held-out error
   constexpr double kGains = 0.97;       // of the present one
   constexpr int kPasses = 2;
+  const SearchOptions& options = settings.options;
+  const Part part(signals, settings);
   const auto inside = [](const Trial& trial) { return ends_inside_body(trial.model); };
   for (int pass = 0; pass < kPasses; ++pass) {
     const auto best = std::ranges::find_if(all, inside);
     if (best == all.end() || best->rmse > kGains * current_rmse) return;
     while (!passes_through_body(best->model) &&
-           static_cast<int>(best->model.body.order()) < order) {
+           static_cast<int>(best->model.body.order()) < settings.order) {
       Trial richer =
-          judged_trial(lifted(best->model), signals, blocks, options.fit_iterations, true);
+          judged_trial(lifted(best->model), signals, settings.blocks, options.fit_iterations, true);
       if (!(richer.rmse < kWorthPoles * best->rmse)) break;
       *best = std::move(richer);
     }
     const Model from = best->model;
-    for_each(all.size(), [&](std::size_t i) {
+    const double best_rmse =
+        part.is_whole ? best->rmse : judged_trial(from, part.signals, part.blocks, 1, false).rmse;
+    settings.for_each(all.size(), [&](std::size_t i) {
       if (!inside(all[i]) || &all[i] == &*best) return;
       const auto start = with_shape_of(all[i].model.effects.back(), from, signals);
       if (!start) return;
-      Trial other = judged_trial(*start, signals, blocks, options.screening_iterations, false);
-      if (!(other.rmse < std::min(kNear * best->rmse, all[i].rmse))) return;
-      other = judged_trial(std::move(other.model), signals, blocks, options.fit_iterations, true);
+      Trial other =
+          judged_trial(*start, part.signals, part.blocks, options.screening_iterations, false);
+      if (!(other.rmse < kNear * best_rmse) || (part.is_whole && other.rmse >= all[i].rmse)) return;
+      other = judged_trial(std::move(other.model), signals, settings.blocks, options.fit_iterations,
+                           true);
       if (other.rmse < all[i].rmse) all[i] = std::move(other);
     });
     std::ranges::stable_sort(all, by_rmse);
@@ -150,12 +168,36 @@ std::size_t near_the_best(const std::vector<Trial>& all, double current_rmse) {
   return near;
 }
 
+// The first of them fitted to the end and judged by the linearisation alone.
+void fit_on_part(Screened& screened, std::size_t count, const Part& part,
+                 const RoundSettings& settings) {
+  auto& all = screened.trials;
+  settings.for_each(count, [&](std::size_t i) {
+    const bool own_body = all[i].own_body;
+    if (i < kFewest && !screened.first_fitted) {
+      start_afresh(all[i].model, part.signals, settings.order);
+    }
+    all[i] = judged_trial(std::move(all[i].model), part.signals, part.blocks,
+                          settings.options.fit_iterations, false);
+    all[i].own_body = own_body;
+  });
+  std::ranges::stable_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), by_rmse);
+}
+
 }  // namespace
+
+Signals screened_part(const Signals& signals) {
+  constexpr std::size_t kPieces = 10;
+  if (signals.size() <= kMostScreened) return signals;
+  return signals.cut_to(
+      spread_pieces(signals.stretches(), kPieces, kMostScreened, signals.rate_hz()));
+}
 
 Screened screened_trials(const Model& current, double current_rmse, const Signals& signals,
                          const RoundSettings& settings, Shapes shapes,
                          std::vector<Proposal> known) {
-  const Screening screening(current, signals, settings.blocks, settings.impulse_response,
+  const Part part(signals, settings);
+  const Screening screening(current, part.signals, part.blocks, settings.impulse_response,
                             std::move(known));
   std::vector<const EffectKind*> kinds;
   std::ranges::copy_if(effect_kinds(), std::back_inserter(kinds), [&](const EffectKind* kind) {
@@ -172,36 +214,32 @@ Screened screened_trials(const Model& current, double current_rmse, const Signal
     if (proposals[i].body) model.body = *proposals[i].body;
     model.effects.push_back(proposals[i].effect);
     all[i] = is_hopeless(proposals[i]) ? not_fitted(std::move(model))
-                                       : judged_trial(std::move(model), signals, settings.blocks,
+                                       : judged_trial(std::move(model), part.signals, part.blocks,
                                                       settings.options.screening_iterations, false);
     all[i].own_body = proposals[i].body.has_value();
   });
   std::ranges::stable_sort(all, by_rmse);
+  if (!part.is_whole) current_rmse = held_out(current, part.signals, part.blocks).rmse();
   const std::size_t near = near_the_best(all, current_rmse);
-  return {std::move(all), near};
+  return {std::move(all), current_rmse, near};
 }
 
-void fit_first(Screened& screened, double current_rmse, const Signals& signals,
-               const RoundSettings& settings) {
-  auto& all = screened.trials;
-  const std::size_t first = std::min(screened.near, kFewest);
-  settings.for_each(first, [&](std::size_t i) {
-    const bool own_body = all[i].own_body;
-    start_afresh(all[i].model, signals, settings.order);
-    all[i] = judged_trial(std::move(all[i].model), signals, settings.blocks,
-                          settings.options.fit_iterations, false);
-    all[i].own_body = own_body;
-  });
-  std::ranges::stable_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(first), by_rmse);
-  drop_bursts(all, current_rmse);
-  screened.near = std::min(screened.near, all.size());
+void fit_first(Screened& screened, const Signals& signals, const RoundSettings& settings) {
+  fit_on_part(screened, std::min(screened.near, kFewest), Part(signals, settings), settings);
+  drop_bursts(screened.trials, screened.current_rmse);
+  screened.near = std::min(screened.near, screened.trials.size());
   screened.first_fitted = true;
 }
 
 std::vector<Trial> finished_trials(Screened screened, double current_rmse, const Signals& signals,
                                    const RoundSettings& settings) {
   auto& all = screened.trials;
-  if (!screened.first_fitted) {
+  if (const Part part(signals, settings); !part.is_whole) {
+    fit_on_part(screened, screened.near, part, settings);
+    screened.near = near_the_best(all, screened.current_rmse);
+    std::for_each(all.begin() + static_cast<std::ptrdiff_t>(screened.near), all.end(),
+                  [](Trial& trial) { trial = not_fitted(std::move(trial.model)); });
+  } else if (!screened.first_fitted) {
     settings.for_each(std::min(screened.near, kFewest),
                       [&](std::size_t i) { start_afresh(all[i].model, signals, settings.order); });
   }
@@ -210,8 +248,7 @@ std::vector<Trial> finished_trials(Screened screened, double current_rmse, const
                           settings.options.fit_iterations, true);
   });
   std::ranges::stable_sort(all, by_rmse);
-  exchange_shapes(all, current_rmse, signals, settings.blocks, settings.order, settings.options,
-                  settings.for_each);
+  exchange_shapes(all, current_rmse, signals, settings);
   drop_bursts(all, current_rmse);
   return std::move(all);
 }

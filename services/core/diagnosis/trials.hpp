@@ -35,11 +35,17 @@ bool passes_over_samples(const Trial& trial);
 /// tried too: an effect may have hidden poles of a body whose order was reduced.
 void start_afresh(Model& model, const Signals& signals, int order);
 
+/// Of a record with more samples, every form is fitted to pieces first, kMostScreened samples in
+/// all, and those that are near the best there to all samples.
+inline constexpr std::size_t kMostScreened = 20'000;
+/// The pieces; all samples of a record without more.
+Signals screened_part(const Signals& signals);
+
 /// What all rounds of a search have in common.
 struct RoundSettings {
   const Blocks& blocks;
-  const ImpulseResponse& impulse_response;
-  int order;  ///< of the body, before it was reduced
+  const ImpulseResponse& impulse_response;  ///< of screened_part()
+  int order;                                ///< of the body, before it was reduced
   const SearchOptions& options;
   const ForEach& for_each;
 };
@@ -47,6 +53,7 @@ struct RoundSettings {
 /// A round after the screening.
 struct Screened {
   std::vector<Trial> trials;  ///< best first
+  double current_rmse = 0.0;  ///< of screened_part(), held out, of the model without any of them
   std::size_t near = 0;       ///< so many are near enough to the best to be fitted to the end
   bool first_fitted = false;  ///< the first few are
 };
@@ -58,10 +65,10 @@ struct Screened {
 Screened screened_trials(const Model& current, double current_rmse, const Signals& signals,
                          const RoundSettings& settings, Shapes shapes,
                          std::vector<Proposal> known = {});
-/// The first few fitted to the end and judged by the linearisation alone.
-void fit_first(Screened& screened, double current_rmse, const Signals& signals,
-               const RoundSettings& settings);
-/// Those near the best fitted to the end and judged by refitting.  Best first.
+/// The first few fitted to the end on screened_part() and judged by the linearisation alone.
+void fit_first(Screened& screened, const Signals& signals, const RoundSettings& settings);
+/// Those near the best fitted to the end on all samples and judged by refitting.  Best first.
+/// @param current_rmse  held out, of the model without any of them
 std::vector<Trial> finished_trials(Screened screened, double current_rmse, const Signals& signals,
                                    const RoundSettings& settings);
 /// The proposals that came with bodies of their own, as they were fitted.

@@ -54,7 +54,6 @@ std::vector<double> smoothed(const std::vector<double>& x, const signal::Butterw
   return y;
 }
 
-// Pieces of equal length, evenly spread; none reaches over a stretch's end.
 Measurement thinned(const Measurement& measurement) {
   Measurement result;
   result.source = measurement.source;
@@ -63,28 +62,19 @@ Measurement thinned(const Measurement& measurement) {
   for (const Channel& channel : measurement.channels) {
     result.channels.push_back({channel.name, channel.unit, {}});
   }
-  const std::size_t piece = kMostSamples / kPieces;
-  const std::size_t step = measurement.size() / kPieces;
-  for (const Stretch& stretch : measurement.stretches) {
-    // Pieces begin at multiples of the step; a stretch's end cuts them.
-    for (std::size_t begin = stretch.first / step * step; begin < stretch.end; begin += step) {
-      const std::size_t first = std::max(begin, stretch.first);
-      const std::size_t end = std::min(begin + piece, stretch.end);
-      if (end < first + kShortestPiece) continue;
-      const auto from = static_cast<std::ptrdiff_t>(first);
-      const auto to = static_cast<std::ptrdiff_t>(end);
-      const double start_s =
-          stretch.start_s + static_cast<double>(first - stretch.first) / measurement.rate_hz;
-      const std::size_t at = result.weight.size();
-      result.weight.insert(result.weight.end(), measurement.weight.begin() + from,
-                           measurement.weight.begin() + to);
-      for (std::size_t c = 0; c < result.channels.size(); ++c) {
-        const auto& values = measurement.channels[c].values;
-        result.channels[c].values.insert(result.channels[c].values.end(), values.begin() + from,
-                                         values.begin() + to);
-      }
-      result.stretches.push_back({at, result.weight.size(), start_s, stretch.recording});
+  for (const Stretch& piece :
+       spread_pieces(measurement.stretches, kPieces, kMostSamples, measurement.rate_hz)) {
+    const auto from = static_cast<std::ptrdiff_t>(piece.first);
+    const auto to = static_cast<std::ptrdiff_t>(piece.end);
+    const std::size_t at = result.weight.size();
+    result.weight.insert(result.weight.end(), measurement.weight.begin() + from,
+                         measurement.weight.begin() + to);
+    for (std::size_t c = 0; c < result.channels.size(); ++c) {
+      const auto& values = measurement.channels[c].values;
+      result.channels[c].values.insert(result.channels[c].values.end(), values.begin() + from,
+                                       values.begin() + to);
     }
+    result.stretches.push_back({at, result.weight.size(), piece.start_s, piece.recording});
   }
   result.notes.push_back("of " + std::to_string(measurement.size()) + " samples " +
                          std::to_string(result.size()) + " in " +
@@ -94,6 +84,24 @@ Measurement thinned(const Measurement& measurement) {
 }
 
 }  // namespace
+
+std::vector<Stretch> spread_pieces(const std::vector<Stretch>& stretches, std::size_t pieces,
+                                   std::size_t most, double rate_hz) {
+  const std::size_t piece = most / pieces;
+  const std::size_t step = stretches.back().end / pieces;
+  std::vector<Stretch> result;
+  for (const Stretch& stretch : stretches) {
+    // Pieces begin at multiples of the step; a stretch's end cuts them.
+    for (std::size_t begin = stretch.first / step * step; begin < stretch.end; begin += step) {
+      const std::size_t first = std::max(begin, stretch.first);
+      const std::size_t end = std::min(begin + piece, stretch.end);
+      if (end < first + kShortestPiece) continue;
+      const double start_s = stretch.start_s + static_cast<double>(first - stretch.first) / rate_hz;
+      result.push_back({first, end, start_s, stretch.recording});
+    }
+  }
+  return result;
+}
 
 Measurement decimated(const Measurement& measurement, std::size_t factor) {
   Measurement result;

@@ -11,6 +11,11 @@ namespace stillhand::diagnosis {
 /// Largest number of samples that the engine uses.
 inline constexpr std::size_t kMostSamples = 80'000;
 
+/// Pieces of equal length, evenly spread over stretches, `most` samples in all; none reaches over a
+/// stretch's end.
+std::vector<Stretch> spread_pieces(const std::vector<Stretch>& stretches, std::size_t pieces,
+                                   std::size_t most, double rate_hz);
+
 /// A measurement as the engine uses it: at a rate of at least twenty times the highest frequency
 /// that the inputs excite (at least 100 Hz); from a long record a number of pieces evenly spread
 /// over it, kMostSamples in all.  Notes report both.
