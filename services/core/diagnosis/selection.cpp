@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/statistics/sample_check.hpp"
 #include "services/core/statistics/signed_rank.hpp"
 
 namespace stillhand::diagnosis {
@@ -48,6 +49,9 @@ Comparison compared(const HeldOut& before, const HeldOut& after) {
   const BlockDifferences blocks = mean_squares(before, after);
   const auto count = static_cast<double>(blocks.before.size());
   if (blocks.before.size() < 3) return result;
+  if (!(std::max(sum_of(blocks.before), sum_of(blocks.after)) <= statistics::kLargestMagnitude)) {
+    return result;
+  }
   result.rmse_ratio = std::sqrt(sum_of(blocks.after) / std::max(sum_of(blocks.before), 1e-300));
   double mean = 0.0;
   std::vector<double> differences;

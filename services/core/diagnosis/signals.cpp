@@ -76,6 +76,14 @@ double correlation(const Signal& left, const std::vector<double>& values) {
   return sum / (static_cast<double>(values.size()) * left.deviation * right.deviation);
 }
 
+// A channel that explains nothing: constant but for its rounding, or what a filter's start has faded
+// to.  No sensor resolves 1e-50 of an SI unit, and the sixth power of it still is a normal double.
+bool is_constant(const Signal& signal) {
+  constexpr double kRounding = 1e-12;  // of the mean
+  constexpr double kFaded = 1e-50;
+  return !(signal.deviation > std::max(kFaded, kRounding * std::abs(signal.mean)));
+}
+
 Signal from_channel(const Channel& channel) {
   Signal signal{channel.name, channel.name,  channel.unit, quantity_of(channel.unit),
                 false,        channel.values};
@@ -124,7 +132,7 @@ Signals::Signals(const Measurement& measurement, const std::vector<std::string>&
   for (const Channel& channel : measurement.channels) {
     if (channel.name == output || is_input(channel.name)) continue;
     Signal signal = from_channel(channel);
-    if (signal.deviation > 0.0) all_.push_back(std::move(signal));  // a constant explains nothing
+    if (!is_constant(signal)) all_.push_back(std::move(signal));
   }
   leave_starts_unjudged();
   add_derived();
@@ -191,7 +199,7 @@ void Signals::add_derived() {
       continue;
     }
     set_moments(made);
-    if (made.deviation > 0.0) all_.push_back(std::move(made));
+    if (!is_constant(made)) all_.push_back(std::move(made));
   }
 }
 

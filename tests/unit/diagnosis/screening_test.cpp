@@ -47,6 +47,17 @@ TEST(ScreeningTest, AColumnWithoutAMeaningGainsNothing) {
   EXPECT_LT(sum / 10.0, 0.0005);
 }
 
+// The folds without its one large row give it a coefficient that is beyond any test there.
+TEST(ScreeningTest, AColumnWhoseErrorOverflowsGainsNothing) {
+  const made::Studied of(with_another_channel(), 2);
+  std::vector<double> column = made::white(kCount, 4);
+  for (double& value : column) value *= 1e-94;
+  column[kCount / 2] = 1.0;
+  const ScreenedGain sut = of.screening.gain({column});
+  EXPECT_LE(sut.share, 0.0);
+  EXPECT_EQ(sut.p, 1.0);
+}
+
 TEST(ScreeningTest, WhatTheModelHasAlreadyGainsNothing) {
   const made::Studied of(with_another_channel(), 2);
   EXPECT_LT(of.screening.gain({of.signals.at("u").values}).share, 0.002);

@@ -97,6 +97,13 @@ TEST(SelectionTest, AModelThatRanAwayIsNeverChosen) {
   }
 }
 
+TEST(SelectionTest, AnErrorBeyondAnyTestIsNoImprovement) {
+  const HeldOut far = even("drift", 1e110, 1).held_out;
+  const HeldOut near = even("drift", 1.0, 1).held_out;
+  EXPECT_EQ(compared(near, far).p, 1.0);
+  EXPECT_FALSE(worth_it(compared(near, far), {}, 0.0, 1));
+}
+
 TEST(SelectionTest, AModelWithoutErrorIsChosen) {
   const std::vector<Trial> sut{even("tone", 1.0, 0), even("drift", 0.0, 12)};
   EXPECT_EQ(chosen_of(sut, 3.0, {}), 1u);

@@ -81,6 +81,19 @@ TEST(SignalsTest, MomentsAreThoseOfAllSamples) {
 TEST(SignalsTest, AConstantChannelExplainsNothing) {
   EXPECT_THAT(names_of(with({{"temp", "degC", std::vector<double>(kCount, 20.0)}})),
               ElementsAre("u"));
+  std::vector<double> rounded(kCount, 20.0);
+  rounded[100] = std::nextafter(20.0, 21.0);
+  EXPECT_THAT(names_of(with({{"temp", "degC", rounded}})), ElementsAre("u"));
+}
+
+// A stick's rate behind a filter, in a trial in which the stick is pegged.
+TEST(SignalsTest, WhatAFiltersStartHasFadedToExplainsNothing) {
+  std::vector<double> omega(kCount);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    omega[n] =
+        5e-94 * std::exp(-0.2 * static_cast<double>(n)) * std::cos(0.3 * static_cast<double>(n));
+  }
+  EXPECT_THAT(names_of(with({{"omega", "rad/s", omega}})), ElementsAre("u"));
 }
 
 // Central differences of sin(wt) over 2 T give w cos(wt) sinc(w T), 1 - (w T)^2/6 of it: 6.6e-4

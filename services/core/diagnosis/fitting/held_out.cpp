@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "services/core/signal/decompositions.hpp"
+#include "services/core/statistics/sample_check.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -44,7 +45,7 @@ HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks) {
       const double square = gram(count, count) - 2.0 * step.dot(gram.col(count).head(count)) +
                             step.dot(gram.topLeftCorner(count, count) * step);
       result.squares[b] = std::max(square, 0.0);
-      result.finite = result.finite && std::isfinite(square);
+      result.finite = result.finite && std::abs(square) <= statistics::kLargestMagnitude;
     }
   }
   return result;
@@ -83,6 +84,7 @@ HeldOut held_out(const Model& model, const Signals& signals, const Blocks& block
       result.weights[block] += fitted.run.weight[n];
     }
   }
+  result.finite = result.finite && sum_of(result.squares) <= statistics::kLargestMagnitude;
   return result;
 }
 

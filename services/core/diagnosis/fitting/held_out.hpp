@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 
 /// Sums of squared errors a block, of predictions by a model fitted without the block's fold.
 struct HeldOut {
-  bool finite = false;
+  bool finite = false;          ///< a square beyond 1e100, which no test takes, counts as not
   std::vector<double> squares;  ///< [blocks]
   std::vector<double> weights;  ///< [blocks]
 
