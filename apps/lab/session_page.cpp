@@ -22,6 +22,15 @@ std::string restored(std::optional<double> share) {
   return share && std::isfinite(*share) ? report::restored(*share) : "–";
 }
 
+std::string restored(const session::SessionResult& result, const session::Number& shown) {
+  const session::TrialResult* a = trial_of(result, session::Condition::kA);
+  const session::TrialResult* b = trial_of(result, session::Condition::kB);
+  if (a != nullptr && b != nullptr && !shown.worse(shown.of(*a), shown.of(*b))) {
+    return report::kNotWorse;
+  }
+  return restored(restoration_of(result, shown));
+}
+
 std::vector<report::Cell> own_row(const session::SessionResult& result,
                                   const session::Number& shown) {
   std::vector<report::Cell> row{std::string(shown.title) + ", this session"};
@@ -33,7 +42,7 @@ std::vector<report::Cell> own_row(const session::SessionResult& result,
         number(trial ? shown.of(*trial) : NAN, shown.decimals + 1) + (disturbed ? " *" : ""),
         report::Emphasis::kStrong);
   }
-  row.emplace_back(restored(restoration_of(result, shown)), report::Emphasis::kStrong);
+  row.emplace_back(restored(result, shown), report::Emphasis::kStrong);
   return row;
 }
 

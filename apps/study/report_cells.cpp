@@ -31,6 +31,8 @@ std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 std::string restored_text(const Analysis& analysis, std::size_t metric, Condition condition) {
   const auto found = analysis.restoration.find(condition);
   if (found == analysis.restoration.end() || !found->second[metric].share) return "–";
+  const auto mean = [&](Condition of) { return analysis.conditions.at(of)[metric].mean; };
+  if (!session::kMetrics[metric].worse(mean(kA), mean(kB))) return report::kNotWorse;
   std::optional<std::pair<double, double>> ends;
   if (const auto& interval = found->second[metric].interval) {
     ends.emplace(interval->low, interval->high);

@@ -35,6 +35,9 @@ std::string short_number(double value);
 /// says so, and a share outside of 0 to 1 has its meaning: "130 % (no interval), better than A".
 std::string restored(double share, const std::optional<std::pair<double, double>>& interval95 = {});
 
+/// In the place of restored(): nothing was taken.
+inline constexpr const char* kNotWorse = "–, B is not worse than A";
+
 /// factor×10^exponent for people, with superscripts: "10⁻⁵", "2×10³".
 std::string power_of_ten(int factor, int exponent);
 

@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "apps/libraries/session/core/trial_forces.hpp"
 #include "apps/libraries/session/loop.hpp"
 #include "apps/libraries/session/measured_ticks.hpp"
-#include "apps/libraries/session/trial_forces.hpp"
 #include "services/core/cancellation/parts/countermeasure.hpp"
 #include "services/core/rig/sensors.hpp"
 #include "services/messages/cancellation/codec.hpp"

@@ -76,8 +76,9 @@ double correlation(const Signal& left, const std::vector<double>& values) {
   return sum / (static_cast<double>(values.size()) * left.deviation * right.deviation);
 }
 
-// A channel that explains nothing: constant but for its rounding, or what a filter's start has faded
-// to.  No sensor resolves 1e-50 of an SI unit, and the sixth power of it still is a normal double.
+// A channel that explains nothing: constant but for its rounding, or what a filter's start has
+// faded to.  No sensor resolves 1e-50 of an SI unit, and the sixth power of it still is a normal
+// double.
 bool is_constant(const Signal& signal) {
   constexpr double kRounding = 1e-12;  // of the mean
   constexpr double kFaded = 1e-50;

@@ -109,6 +109,10 @@ struct Number {
   }
   [[nodiscard]] constexpr const char* header() const { return *column != 0 ? column : title; }
   [[nodiscard]] constexpr bool is_judged() const { return *judged != 0; }
+  /// Only what the motion makes worse can be restored.
+  [[nodiscard]] constexpr bool worse(double from, double to) const {
+    return lower_is_better ? to > from : to < from;
+  }
   /// "mm"; "-" of a ratio.
   [[nodiscard]] constexpr std::string_view unit() const {
     const std::string_view text = title;
