@@ -108,6 +108,7 @@ std::string in_plain_text(const Table& table) {
   lines.insert(lines.end(), table.rows.begin(), table.rows.end());
   std::vector<std::size_t> widths(table.header.size());
   for (const std::vector<Cell>& line : lines) {
+    STILLHAND_EXPECTS(line.size() <= widths.size());
     for (std::size_t i = 0; i < line.size(); ++i) {
       widths[i] = std::max(widths[i], characters(line[i].text));
     }
