@@ -373,6 +373,19 @@ def noisy(change, share):
 for hz in (50, 30, 25, 10):
     spoilt("A3", f"acceleration held at {hz} Hz behind a noise of 5 %", Unusable(("a_y", "held")),
            acc=noisy(lambda x, hz=hz: x[(numpy.floor(TIME * hz + 1e-6) * RATE_HZ / hz).astype(int)], 0.05))
+
+
+def held_unevenly(x):
+    """For 2 to 9 rows, as a bus delivers."""
+    lengths = numpy.random.default_rng(17).integers(2, 10, ROWS)
+    return numpy.repeat(x[numpy.minimum(numpy.r_[0, numpy.cumsum(lengths)[:-1]], ROWS - 1)], lengths)[:ROWS]
+
+
+for share in (0.003, 0.03, 0.1):
+    spoilt("A3", f"acceleration held for 2 to 9 rows behind a noise of {share:.1%}", Unusable(("a_y", "held")),
+           acc=noisy(held_unevenly, share))
+spoilt("A3", "force held for 2 to 9 rows behind a noise of 3 %", Unusable(("f", "held")),
+       force=noisy(held_unevenly, 0.03))
 spoilt("A3", "force held at 20 Hz behind a noise of 2 %", Unusable(("f", "held")), force=noisy(held(5), 0.02))
 spoilt("A3", "acceleration in straight lines from 25 Hz behind a noise of 3 %", Unusable(("a_y", "held")),
        acc=noisy(lambda x: numpy.interp(TIME, TIME[::4], x[::4]), 0.03))

@@ -52,6 +52,9 @@ double held_rows(const std::vector<double>& values, const std::vector<Place>& ru
 /// squares of the first or second differences are then a comb, whose lines are as large as their
 /// mean.  From 10 Hz on; of 32,768 rows.
 double comb_rows(const std::vector<double>& values, int order, double rate_hz);
+/// Rows, on the mean, for which values are held unevenly behind a noise; 0: they are not.  Steps
+/// above four deviations of the usual ones are then many, and alone.  Of 32,768 rows.
+double uneven_rows(const std::vector<double>& values, double rate_hz);
 /// Rows from knot to knot of straight lines, as an interpolation from a lower rate leaves them; 0:
 /// there are none.
 double straight_rows(const std::vector<double>& values, double rate_hz);

@@ -242,7 +242,18 @@ class Screen {
                             "at its own rate",
                             own_rate(rows), 500.0 * (rows - 1.0) / rows_.rate_hz));
     }
-    return rows > 0.0 || in_lines(column, values);
+    return rows > 0.0 || held_unevenly(column, values) || in_lines(column, values);
+  }
+
+  bool held_unevenly(const Column& column, const std::vector<double>& values) {
+    const double rows = uneven_rows(values, rows_.rate_hz);
+    if (rows == 0.0) return false;
+    add_whole(
+        column, "held",
+        fmt::format("values are held unevenly: about {:.2g} Hz inside {:.4g} Hz; record it at "
+                    "its own rate",
+                    rows_.rate_hz / rows, rows_.rate_hz));
+    return true;
   }
 
   [[nodiscard]] std::string own_rate(double rows) const {
