@@ -52,20 +52,35 @@ Trial judged_from_start(const Model& model, const Signals& signals, const Blocks
   return trial;
 }
 
+// Its poles would have been allowed there: nothing held it back.
+bool is_within_bounds_of(const Body& bound, Body body) {
+  body.largest_radius = bound.largest_radius;
+  body.slowest_radius = bound.slowest_radius;
+  body.least_turn = bound.least_turn;
+  return is_stable(body);
+}
+
 // A body that rings or holds a level for long, where the bound of its poles holds back the one that
 // was fitted, Eq. DG-66.  True where it is kept.
 bool allow_slow_poles(Baseline& baseline, Signals& signals, const Blocks& blocks, int order) {
   const Body& body = baseline.model.body;
   if (body.order() == 0 || !is_near_bound(body)) return false;
   const Signals slow = signals.with_slow_poles();
-  const double quick = judged_from_start(baseline.model, signals, blocks, order).rmse;
+  double quick = judged_from_start(baseline.model, signals, blocks, order).rmse;
   std::vector<Baseline> fitted;
   std::vector<Trial> tried;
   for (int p = order; p > 0; --p) {
-    fitted.push_back(fit_baseline(slow, blocks, p));
-    fitted.back().order = order;
-    tried.push_back(judged_from_start(fitted.back().model, slow, blocks, order));
+    Baseline other = fit_baseline(slow, blocks, p);
+    Trial trial = judged_from_start(other.model, slow, blocks, order);
+    if (is_within_bounds_of(body, other.model.body)) {
+      quick = std::min(quick, trial.rmse);
+      continue;
+    }
+    other.order = order;
+    fitted.push_back(std::move(other));
+    tried.push_back(std::move(trial));
   }
+  if (tried.empty()) return false;
   const Trial& best = *std::ranges::min_element(tried, by_rmse);
   if (!(best.rmse < kWorthSlowPoles * quick)) return false;
   // Of those that tie, the one that explains most between samples that it knows.
