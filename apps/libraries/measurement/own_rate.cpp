@@ -156,6 +156,7 @@ double uneven_rows(const std::vector<double>& values, double rate_hz) {
   constexpr double kLarge = 4.0;  // deviations: 6e-5 of Gauss' noise, 0.016 of Laplace's
   constexpr double kLeastShare = 0.05;
   constexpr double kOnwards = 0.25;  // friction and commands of two levels turn at each jump
+  constexpr double kOneWay = 0.2;    // a sawtooth jumps back alone
   const std::vector<double> e = differences_of(values, 1);
   std::vector<double> sizes;
   for (const double each : e) sizes.push_back(std::abs(each));
@@ -163,10 +164,11 @@ double uneven_rows(const std::vector<double>& values, double rate_hz) {
   std::ranges::nth_element(sizes, middle);
   const double least = kLarge * 1.4826 * *middle;
   if (least == 0.0) return 0.0;  // runs of equal values: held_rows()
-  double jumps = 0.0, neighbours = 0.0, onwards = 0.0, squares = 0.0, before = 0.0;
+  double jumps = 0.0, up = 0.0, neighbours = 0.0, onwards = 0.0, squares = 0.0, before = 0.0;
   for (std::size_t i = 0; i < e.size(); ++i) {
     if (std::abs(e[i]) <= least) continue;
     jumps += 1.0;
+    up += e[i] > 0.0 ? 1.0 : 0.0;
     squares += e[i] * e[i];
     neighbours += i > 0 && std::abs(e[i - 1]) > least ? 1.0 : 0.0;
     onwards += before * e[i] > 0.0 ? 1.0 : 0.0;
@@ -176,6 +178,7 @@ double uneven_rows(const std::vector<double>& values, double rate_hz) {
   const double deviation = deviation_of(values);
   const bool held = share >= std::max(kLeastShare, kSlowest_hz / rate_hz) &&
                     neighbours < 0.5 * share * jumps && onwards >= kOnwards * jumps &&
+                    std::min(up, jumps - up) >= kOneWay * jumps &&
                     squares / jumps / 3.0 >= kLeastError * deviation * deviation;
   return held ? 1.0 / share : 0.0;
 }
