@@ -40,8 +40,8 @@ std::vector<BadRows> far_values(const std::vector<double>& values);
 std::optional<BadRows> spikes_in(const std::vector<double>& values, double rate_hz,
                                  const std::function<bool(const Place&)>& quiet);
 /// @param should_move  asked of a place: would a sound channel have moved there?
-std::optional<BadRows> stuck_in(const std::vector<double>& values, const std::vector<Place>& runs,
-                                double rate_hz,
+/// A rest may jitter by two of the channel's last digits.
+std::optional<BadRows> stuck_in(const std::vector<double>& values, double rate_hz,
                                 const std::function<bool(const Place&)>& should_move);
 std::optional<BadRows> clipped_in(const std::vector<double>& values,
                                   const std::vector<Place>& runs);

@@ -155,7 +155,7 @@ class Screen {
     const auto spikes = spikes_in(values, rows_.rate_hz,
                                   [&](const Place& place) { return is_quiet(column, place); });
     if (spikes) take_out(column, *spikes);
-    const auto stuck = stuck_in(values, runs, rows_.rate_hz,
+    const auto stuck = stuck_in(values, rows_.rate_hz,
                                 [&](const Place& place) { return should_move(column, place); });
     if (stuck) take_out(column, *stuck);
     if (const auto dropped = dropped_in(values, rows_.rate_hz)) take_out(column, *dropped);

@@ -87,6 +87,23 @@ TEST(SampleScreenTest, AChannelOutsideOfTheModelIsLeftOutWhole) {
   EXPECT_EQ(rows.row_count(), spoiled::kRows);
 }
 
+// A converter of 1 mN whose last digit goes on jittering.
+TEST(SampleScreenTest, AStuckChannelMayJitterInItsLastDigit) {
+  for (const std::size_t end : {std::size_t{3500}, spoiled::kRows}) {
+    Recording rows = spoiled::known_body();
+    std::vector<double>& force = rows.columns[1].values;
+    spoiled::Dice dice;
+    for (std::size_t n = 0; n < force.size(); ++n) {
+      if (n >= 2500 && n < end) force[n] = force[2499] + 2e-3 * std::floor(3.0 * dice.next() - 1.0);
+      force[n] = std::round(force[n] * 1e3) / 1e3;
+    }
+    const auto sut = screen(rows, {});
+    ASSERT_EQ(sut.size(), 1u) << end;
+    EXPECT_EQ(sut[0].what, "stuck");
+    EXPECT_EQ(sut[0].unsound, end == spoiled::kRows);
+  }
+}
+
 TEST(SampleScreenTest, AFaultOfMostRowsMakesTheChannelUnsound) {
   Recording rows = spoiled::known_body();
   spoiled::fill(rows.columns[1].values, 2000, 5500, 1.25);
