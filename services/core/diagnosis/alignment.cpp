@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "services/core/diagnosis/digits.hpp"
+#include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -116,12 +118,13 @@ Alignment aligned(const std::vector<double>& x, const std::vector<double>& y, do
   return best;
 }
 
+bool drifts(const Alignment& found) { return std::abs(found.drift) * found.middle_s >= kLeast_s; }
+
 std::vector<Alignment> readings(const Alignment& found) {
   // The range of `delay`, which is an effect.
   constexpr double kEarliest_s = -0.1;
   constexpr double kLatest_s = 0.5;
-  const bool drifts = std::abs(found.drift) * found.middle_s >= kLeast_s;
-  if (!drifts && found.lag_s >= kEarliest_s && found.lag_s <= kLatest_s) return {};
+  if (!drifts(found) && found.lag_s >= kEarliest_s && found.lag_s <= kLatest_s) return {};
   std::vector<Alignment> out;
   for (const double of_body_s : {0.0, 0.05, 0.1, 0.15}) {
     out.push_back({found.lag_s - of_body_s, found.drift, found.middle_s});
@@ -145,7 +148,7 @@ std::vector<double> moved(const std::vector<double>& x, double rate_hz, const Al
 std::string in_words(const Alignment& alignment) {
   std::array<char, 160> text{};
   const char* way = alignment.lag_s < 0.0 ? "leads" : "follows";
-  if (std::abs(alignment.drift) * alignment.middle_s < kLeast_s) {
+  if (!drifts(alignment)) {
     std::snprintf(text.data(), text.size(), "the output %s the input by %.3g s", way,
                   std::abs(alignment.lag_s));
   } else {
@@ -157,19 +160,63 @@ std::string in_words(const Alignment& alignment) {
   return text.data();
 }
 
+std::string swapped_in_words(const std::string& input, double back, const std::string& output,
+                             double here) {
+  return output + " leads " + input + ", or the columns are swapped: " + output + " explains " +
+         share_in_words(back) + " of " + input + ", and " + input + " " + share_in_words(here) +
+         " of " + output;
+}
+
+std::string lead_in_words(const std::string& input, const std::string& output, double lead_s,
+                          double with, double left) {
+  return output + " leads " + input + ": a model that knows " + input + " " + digits(lead_s, 3) +
+         " s ahead leaves " + digits(100.0 * with, 3) + " % of " + output + ", this one " +
+         digits(100.0 * left, 3) + " %: the columns may be swapped, or " + input + " comes late";
+}
+
+std::string one_sensor_twice(const std::string& input, const std::vector<double>& x,
+                             const std::string& output, const std::vector<double>& y) {
+  const Likeness line = likeness(x, y);
+  if (!(1.0 - line.share < kTwoSensors)) return {};
+  return output + " is a constant times " + input + " (" + digits(line.gain, 4) +
+         "): one sensor twice?";
+}
+
+Likeness likeness(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto count = static_cast<double>(x.size());
+  const double mean_x = std::reduce(x.begin(), x.end()) / count;
+  const double mean_y = std::reduce(y.begin(), y.end()) / count;
+  double products = 0.0;
+  double squares_x = 0.0;
+  double squares_y = 0.0;
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    products += (x[n] - mean_x) * (y[n] - mean_y);
+    squares_x += (x[n] - mean_x) * (x[n] - mean_x);
+    squares_y += (y[n] - mean_y) * (y[n] - mean_y);
+  }
+  if (!(squares_x > 0.0 && squares_y > 0.0)) return {};
+  return {products / squares_x, products / squares_x * (products / squares_y)};
+}
+
 std::string unlikely_mass(const Motion& motion) {
   // From a finger's 10 g to twice a person on a seat.
   constexpr double kLightest_kg = 0.01;
   constexpr double kHeaviest_kg = 200.0;
-  if (motion.output != "f" || motion.output_unit != "N" || !motion.input.starts_with("a_") ||
-      motion.input_unit != "m/s^2" || !(motion.input_m_s2 > 0.0)) {
-    return {};
-  }
+  if (!why_unchecked(motion).empty() || !(motion.input_m_s2 > 0.0)) return {};
   const double mass_kg = motion.explained_n / motion.input_m_s2;
   if (mass_kg >= kLightest_kg && mass_kg <= kHeaviest_kg) return {};
-  return digits(motion.explained_n, 3) + " N of f follow " + digits(motion.input_m_s2, 3) +
-         " m/s^2 of " + motion.input + ", as a body of " + digits(mass_kg, 3) +
+  return digits(motion.explained_n, 3) + " N of " + motion.output + " follow " +
+         digits(motion.input_m_s2, 3) + " m/s^2 of " + motion.input + ", as a body of " +
+         digits(mass_kg, 3) +
          " kg would, and a hand's is 0.01 to 200 kg: one of the units is wrong";
+}
+
+std::string why_unchecked(const Motion& motion) {
+  if (motion.input_unit == "m/s^2" && motion.output_unit == "N") return {};
+  return "units not checked, because only a motion in m/s^2 and a force in N have a hand's mass, "
+         "and these are " +
+         motion.input + " [" + motion.input_unit + "] and " + motion.output + " [" +
+         motion.output_unit + "]";
 }
 
 }  // namespace stillhand::diagnosis

@@ -31,11 +31,43 @@ Alignment aligned(const std::vector<double>& x, const std::vector<double>& y, do
 /// that its part, 0 to 0.15 s, is left to the body.  Empty: nothing but a body's lag.
 std::vector<Alignment> readings(const Alignment& found);
 
+/// Whether the lag grows by more than a 25th of a period over half of the record.
+bool drifts(const Alignment& found);
+
 /// x as the output's clock sees it; the ends are held.
 std::vector<double> moved(const std::vector<double>& x, double rate_hz, const Alignment& by);
 
 /// "the output leads the input by 2 s", "two clocks 8300 ppm apart, and ..."
 std::string in_words(const Alignment& alignment);
+
+/// "f leads a_y, or the columns are swapped: ..."
+/// @param back  [-] of the input that the output explains
+/// @param here  [-] of the output that the input explains
+std::string swapped_in_words(const std::string& input, double back, const std::string& output,
+                             double here);
+/// "f leads a_y by 0.04 s or more: ..."
+/// @param with  [-] of the output that a model leaves that knows the input so far ahead
+/// @param left  [-] that the model leaves
+std::string lead_in_words(const std::string& input, const std::string& output, double lead_s,
+                          double with, double left);
+
+/// The line y = gain x + level of least squares.
+struct Likeness {
+  double gain = 0.0;
+  double share = 0.0;  ///< [-] of y's power about its mean that the line has
+};
+Likeness likeness(const std::vector<double>& x, const std::vector<double>& y);
+
+/// [-] between gains that one unit does not join.  Persons differ by a factor of two or three
+/// (paper, table I); units by 4.45 (lbf) and more.
+inline constexpr double kAnotherUnit = 4.0;
+
+/// [-] of the power that noise leaves of a line through two sensors' samples at least: 1e-3 of the
+/// size, where the phases of their filters alone differ by more in a hand's band.
+inline constexpr double kTwoSensors = 1e-6;
+/// Why two channels are one: "f is a constant times a_y: one sensor twice?"; empty: they are two.
+std::string one_sensor_twice(const std::string& input, const std::vector<double>& x,
+                             const std::string& output, const std::vector<double>& y);
 
 /// What an acceleration explains of a force.
 struct Motion {
@@ -48,8 +80,10 @@ struct Motion {
 };
 
 /// METHOD Eq. DG-80: why the two can't be of one hand, by the mass that their ratio is; empty: they
-/// can, or are not `a_.. [m/s^2]` and `f [N]`.
+/// can, or are not in m/s^2 and N.
 std::string unlikely_mass(const Motion& motion);
+/// "units not checked, because ..."; empty: unlikely_mass() checks these.
+std::string why_unchecked(const Motion& motion);
 
 /// [-] of the output's power that a model must leave for another clock to be looked for.
 inline constexpr double kAlignmentGate = 0.01;

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/diagnosis/before_effects.hpp"
 #include "services/core/diagnosis/detection/detection_limit.hpp"
 #include "services/core/diagnosis/effect_sizes.hpp"
 #include "services/core/diagnosis/first_model.hpp"
@@ -317,12 +318,8 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   diagnosis.options = options;
   diagnosis.screening = measurement.screening;
   check(measurement);
-  std::vector<std::string> channels = options.inputs;
-  channels.push_back(options.output);
-  if (std::string why = why_unsound(measurement, channels); !why.empty()) {
-    diagnosis.no_model = {"samples", std::move(why)};
-    diagnosis.options.search.most_effects = 0;
-  }
+  diagnosis.no_model = before_any_fit(measurement, options.inputs, options.output);
+  if (diagnosis.no_model) diagnosis.options.search.most_effects = 0;
   step("preparing");
   const Measurement working = working_set(measurement, options.inputs);
   diagnosis.notes = working.notes;
@@ -334,8 +331,11 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   step("baseline");
   fit_first_model(diagnosis, signals, blocks);
   if (!diagnosis.no_model) {
-    diagnosis.no_model =
-        exchanged_of(working, signals, blocks, diagnosis.baseline.model, options.order);
+    const Model& baseline = diagnosis.baseline.model;
+    diagnosis.no_model = exchanged_of(working, signals, blocks, baseline, options.order);
+    if (!diagnosis.no_model) {
+      diagnosis.no_model = late_of(working, signals, blocks, baseline, options.order);
+    }
     if (diagnosis.no_model) diagnosis.options.search.most_effects = 0;
   }
   const ImpulseResponse impulse_response = fit_impulse_response(signals);

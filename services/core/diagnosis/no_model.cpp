@@ -7,12 +7,14 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/alignment.hpp"
+#include "services/core/diagnosis/before_effects.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
 #include "services/core/diagnosis/digits.hpp"
 #include "services/core/diagnosis/fitting/baseline.hpp"
 #include "services/core/diagnosis/fitting/held_out.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/selection.hpp"
+#include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -81,7 +83,7 @@ constexpr double kClearlyLess = 0.5;
 // [-] of the squared error that another reading of the recording must leave at most.
 constexpr double kBetterReading = 0.5;
 
-std::string percent(double left) { return digits(100.0 * (1.0 - left), 3) + " %"; }
+std::string percent(double left) { return share_in_words(1.0 - left); }
 
 Measurement one_recording(const Measurement& all, std::size_t number) {
   Measurement out;
@@ -113,30 +115,36 @@ class OtherReadings {
 
   // A force that holds more than its input causes explains it well too, by leaving the rest out:
   // only where the inputs explain nothing, or their future explains far more.
-  [[nodiscard]] std::optional<NoModel> swapped() const {
+  [[nodiscard]] std::optional<NoModel> swapped(double most = kBetterReading) const {
     if (signals_.inputs().size() != 1) return {};
     const std::string& input = signals_.inputs().front().name;
     const double left = left_by_linear({measurement_, {signals_.output().name}, input}, order_);
-    if (!halves(left)) return {};
-    return NoModel{"swapped", "the columns may be swapped: " + signals_.output().name +
-                                  " explains " + percent(left) + " of " + input + ", and " + input +
-                                  " " + percent(left_) + " of " + signals_.output().name};
+    if (!(left < most * left_)) return {};
+    return NoModel{"swapped",
+                   swapped_in_words(input, 1.0 - left, signals_.output().name, 1.0 - left_)};
   }
 
   // Eq. DG-81.
-  [[nodiscard]] bool knows_the_future() const {
-    if (left_ < kLeadGate || signals_.inputs().size() != 1) return false;
-    return std::ranges::any_of(kLeads_s, [&](double lead_s) {
+  [[nodiscard]] std::optional<NoModel> leads() const {
+    if (left_ < kLeadGate || signals_.inputs().size() != 1) return {};
+    for (const double lead_s : kLeads_s) {
       const Signals shifted = signals_.moved([&](const Signal& signal) {
         return diagnosis::moved(signal.values, signals_.rate_hz(), {-lead_s, 0.0, 0.0});
       });
-      return left_by_linear(shifted, order_) < kBetterLead * left_;
-    });
+      const double left = left_by_linear(shifted, order_);
+      if (!(left < kBetterLead * left_)) continue;
+      if (auto other = swapped()) return other;
+      return NoModel{"clocks", lead_in_words(signals_.inputs().front().name, signals_.output().name,
+                                             lead_s, left, left_)};
+    }
+    return {};
   }
 
-  [[nodiscard]] std::optional<NoModel> clocks() const {
+  // @param drifting  a lag that grows too, which `clock_drift` may describe
+  [[nodiscard]] std::optional<NoModel> clocks(bool drifting) const {
     const Alignment alignment =
         aligned(signals_.inputs().front().values, signals_.output().values, signals_.rate_hz());
+    if (!drifting && drifts(alignment)) return {};
     double least = left_;
     Alignment best;
     for (const Alignment& each : readings(alignment)) {
@@ -180,34 +188,17 @@ class OtherReadings {
   }
 
  private:
-  [[nodiscard]] bool halves(double left) const { return left < kBetterReading * left_; }
-
   static std::optional<NoModel> compared_with(const Model& first, const Signals& signals,
                                               std::size_t number) {
-    const FreeRun run = free_run(first, signals);
-    double products = 0.0;
-    double squares = 0.0;
-    double outputs = 0.0;
-    double mean = 0.0;
-    const auto count = static_cast<double>(signals.size());
-    for (const double each : run.prediction) mean += each / count;
-    for (std::size_t n = 0; n < signals.size(); ++n) {
-      const double each = run.prediction[n] - mean;
-      const double output = signals.output().values[n] - signals.output().mean;
-      products += each * output;
-      squares += each * each;
-      outputs += output * output;
-    }
-    if (products * products < kClearlyLess * squares * outputs) return {};
-    const double gain = products / std::max(squares, 1e-300);
-    // Persons differ by a factor of two or three (paper, table I); units by 4.45 (lbf) and more.
-    constexpr double kUnit = 4.0;
+    const auto [gain, share] =
+        likeness(free_run(first, signals).prediction, signals.output().values);
+    if (share < kClearlyLess) return {};
     const std::string which = "recording " + std::to_string(number + 1) + " has ";
     if (gain < 0.0) {
       return NoModel{"sign", which + "the other sign than recording 1: its gain is " +
                                  digits(gain, 3) + " times that one's"};
     }
-    if (gain > kUnit || gain < 1.0 / kUnit) {
+    if (gain > kAnotherUnit || gain < 1.0 / kAnotherUnit) {
       return NoModel{"unit", which + digits(gain, 3) +
                                  " times the gain of recording 1: one of their units is wrong"};
     }
@@ -220,33 +211,75 @@ class OtherReadings {
   int order_;
 };
 
+// What a model leaves of the output: [-] of what time alone leaves of it, and that [its unit].
+struct Rest {
+  double left = 1.0;
+  double still_rmse = 0.0;
+};
+
+Rest rest_of(const Signals& signals, const Blocks& blocks, const Model& model, double error) {
+  const double still = without_inputs(model, signals, blocks).rmse();
+  return {std::pow(error / std::max(still, 1e-300), 2.0), still};
+}
+
+// Eq. DG-80.
+std::string mass_of(const Signals& signals, const Rest& rest) {
+  if (signals.inputs().size() != 1 || rest.left > 1.0) return {};
+  const Signal& input = signals.inputs().front();
+  const Signal& output = signals.output();
+  return unlikely_mass({input.name, input.unit, input.deviation, output.name, output.unit,
+                        std::sqrt(1.0 - rest.left) * rest.still_rmse});
+}
+
 }  // namespace
+
+std::optional<NoModel> before_any_fit(const Measurement& measurement,
+                                      const std::vector<std::string>& inputs,
+                                      const std::string& output) {
+  std::vector<std::string> channels = inputs;
+  channels.push_back(output);
+  if (std::string why = why_unsound(measurement, channels); !why.empty()) {
+    return NoModel{"samples", std::move(why)};
+  }
+  const Channel* y = measurement.find(output);
+  for (const std::string& input : inputs) {
+    const Channel* x = measurement.find(input);
+    if (x == nullptr || y == nullptr) return {};  // named where the signals are made
+    std::string why = one_sensor_twice(input, x->values, output, y->values);
+    if (!why.empty()) return NoModel{"copy", std::move(why)};
+  }
+  return {};
+}
 
 std::optional<NoModel> exchanged_of(const Measurement& measurement, const Signals& signals,
                                     const Blocks& blocks, const Model& baseline, int order) {
-  const double error = held_out(baseline, signals, blocks).rmse();
-  const double still = without_inputs(baseline, signals, blocks).rmse();
-  const double left = std::pow(error / std::max(still, 1e-300), 2.0);
-  const OtherReadings others(measurement, signals, left, order);
-  return others.knows_the_future() ? others.swapped() : std::nullopt;
+  const Rest rest = rest_of(signals, blocks, baseline, held_out(baseline, signals, blocks).rmse());
+  const OtherReadings others(measurement, signals, rest.left, order);
+  if (auto early = others.leads()) return early;
+  return mass_of(signals, rest).empty() ? std::nullopt : others.swapped(kBetterLead);
+}
+
+std::optional<NoModel> late_of(const Measurement& measurement, const Signals& signals,
+                               const Blocks& blocks, const Model& baseline, int order) {
+  const Rest rest = rest_of(signals, blocks, baseline, held_out(baseline, signals, blocks).rmse());
+  if (rest.left < kAlignmentGate) return {};
+  return OtherReadings(measurement, signals, rest.left, order).clocks(false);
 }
 
 std::optional<NoModel> no_model_of(const Measurement& measurement, const Signals& signals,
                                    const Blocks& blocks, const Model& model, double heldout_rmse,
                                    int order) {
   const HeldOut still = without_inputs(model, signals, blocks);
-  const double left = std::pow(heldout_rmse / std::max(still.rmse(), 1e-300), 2.0);
-  if (left < kClearlyLess && signals.inputs().size() == 1) {
-    const Signal& input = signals.inputs().front();
-    const Signal& output = signals.output();
-    std::string why = unlikely_mass({input.name, input.unit, input.deviation, output.name,
-                                     output.unit, std::sqrt(1.0 - left) * still.rmse()});
+  const Rest rest = rest_of(signals, blocks, model, heldout_rmse);
+  const double left = rest.left;
+  if (left < kClearlyLess) {
+    std::string why = mass_of(signals, rest);
     if (!why.empty()) return NoModel{"unit", std::move(why)};
   }
   const OtherReadings others(measurement, signals, left, order);
   if (auto other = others.one_of_several()) return other;
   if (left < kAlignmentGate) return {};
-  if (auto other = others.clocks()) return other;
+  if (auto other = others.clocks(true)) return other;
   if (left < kClearlyLess) return {};
   const HeldOut apart = held_out(model, signals, in_parts(blocks));
   const double left_apart = std::pow(apart.rmse() / std::max(still.rmse(), 1e-300), 2.0);

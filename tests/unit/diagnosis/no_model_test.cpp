@@ -6,6 +6,7 @@
 
 #include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/diagnosis/share_words.hpp"
 #include "tests/support/spoiled_recordings.hpp"
 
 namespace stillhand::diagnosis {
@@ -45,6 +46,70 @@ TEST(NoModelTest, UnrelatedChannelsClocksAndUnitsAreNamed) {
     EXPECT_EQ(sut.no_model->reason, reason) << name << ": " << sut.no_model->why;
     EXPECT_TRUE(sut.effects.empty()) << name;
   }
+}
+
+Measurement renamed(Measurement measurement) {
+  measurement.channels[0].name = "Acc Y";
+  measurement.channels[1].name = "Grip force";
+  return measurement;
+}
+
+TEST(NoModelTest, AUnitIsNamedUnderAnyNameOfTheColumns) {
+  DiagnoseOptions options;
+  options.inputs = {"Acc Y"};
+  options.output = "Grip force";
+  options.search.most_effects = 0;
+  const Diagnosis sut = diagnose(renamed(measured(named("thousands of newtons"))), options);
+  ASSERT_TRUE(sut.no_model);
+  EXPECT_EQ(sut.no_model->reason, "unit");
+  EXPECT_THAT(why_unchecked({"Acc Y", "V", 0.0, "Grip force", "N", 0.0}),
+              testing::HasSubstr("units not checked, because"));
+}
+
+// Of a force behind a dead zone, with which an effect would be found.
+Measurement late_by(std::ptrdiff_t rows) {
+  Measurement out = measured(named("as it is"));
+  std::vector<double>& force = out.channels[1].values;
+  for (double& value : force) value = std::copysign(std::max(std::abs(value) - 0.5, 0.0), value);
+  std::ranges::rotate(force, rows > 0 ? force.end() - rows : force.begin() - rows);
+  return out;
+}
+
+TEST(NoModelTest, AForceThatIsLateOrEarlyIsNamedBeforeAnEffectIsTried) {
+  for (const std::ptrdiff_t rows : {100, 200, -20}) {
+    const Diagnosis sut = diagnose(late_by(rows), {});
+    ASSERT_TRUE(sut.no_model) << rows << ": " << sut.verdict();
+    EXPECT_TRUE(sut.no_model->reason == "clocks" || (rows < 0 && sut.no_model->reason == "swapped"))
+        << rows << ": " << sut.no_model->why;
+    EXPECT_EQ(sut.options.search.most_effects, 0u) << rows;
+    EXPECT_TRUE(sut.effects.empty()) << rows;
+  }
+}
+
+TEST(NoModelTest, ADeadZoneThatIsNotLateHasItsEffect) {
+  const Diagnosis sut = diagnose(late_by(0), {});
+  EXPECT_EQ(sut.verdict(), "effects found") << (sut.no_model ? sut.no_model->why : "");
+}
+
+TEST(NoModelTest, ACopyOfTheInputIsNamed) {
+  Measurement copy = measured(named("as it is"));
+  for (std::size_t n = 0; n < copy.size(); ++n) {
+    copy.channels[1].values[n] = std::round(20.0 * copy.channels[0].values[n] * 1e3) / 1e3;
+  }
+  const Diagnosis sut = diagnose(copy, {});
+  ASSERT_TRUE(sut.no_model) << sut.verdict();
+  EXPECT_EQ(sut.no_model->reason, "copy");
+  // A thousandth of noise is what two sensors of a rigid mass have at least.
+  spoiled::Dice dice;
+  for (double& value : copy.channels[1].values) value += 0.1 * (dice.next() - 0.5);
+  EXPECT_NE(diagnose(copy, {}).verdict(), "no model");
+}
+
+TEST(NoModelTest, AShareOfAnErrorThatRanAwayIsWords) {
+  EXPECT_EQ(share_in_words(0.9762), "97.6 %");
+  EXPECT_EQ(share_in_words(-5.36e6), "nothing (worse than the mean)");
+  EXPECT_EQ(vaf_in_words(97.616), "VAF 97.62 %");
+  EXPECT_EQ(vaf_in_words(-1e34), "VAF below -100 % (worse than the mean)");
 }
 
 // The effect of that name, or the reason: in both directions.
