@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <string_view>
@@ -28,11 +29,36 @@ constexpr double kLeastHandRate_hz = 5.0;
 constexpr double kFast_hz = 5e3;
 constexpr double kBlink_s = 1.0;
 
-std::string hands_channel(const diagnosis::Measurement& measurement) {
+// In which a hand's motion and force are judged.
+constexpr std::array<std::string_view, 2> kHandsUnits{"m/s^2", "N"};
+
+bool is_chosen(const std::string& name, const ModelChannels& chosen) {
+  return name == chosen.output || std::ranges::find(chosen.inputs, name) != chosen.inputs.end();
+}
+
+std::string hands_channel(const diagnosis::Measurement& measurement, const ModelChannels& chosen) {
   for (const diagnosis::Channel& channel : measurement.channels) {
-    if (!si_unit(channel.name).empty()) return channel.name;
+    const bool in_its_unit = std::ranges::find(kHandsUnits, channel.unit) != kHandsUnits.end();
+    if (!si_unit(channel.name).empty() || (in_its_unit && is_chosen(channel.name, chosen))) {
+      return channel.name;
+    }
   }
   return {};
+}
+
+// A column that is chosen under its own title, "Acc Y (g)", is judged as one that is mapped.
+void convert_chosen(recording::Recording& rows, const ModelChannels& chosen,
+                    std::vector<std::string>& notes) {
+  for (recording::Column& column : rows.columns) {
+    if (!si_unit(column.name).empty() || !is_chosen(column.name, chosen)) continue;
+    for (const std::string_view unit : kHandsUnits) {
+      const auto conversion = unit_conversion(column.unit, {}, std::string(unit));
+      if (!conversion || column.unit == unit) continue;
+      conversion->apply(column.values);
+      notes.push_back(fmt::format("{} from [{}] to [{}].", column.name, column.unit, unit));
+      column.unit = unit;
+    }
+  }
 }
 
 // A factor of the times that makes the rate one of a laboratory's sensors; 0: none of the usual.
@@ -58,9 +84,9 @@ std::string other_unit(double rate_hz) {
       rate_hz / factor, factor == 1e-3 ? std::string("t [ms]") : fmt::format("t * {:g}", factor));
 }
 
-void refuse_blink(const diagnosis::Measurement& measurement) {
+void refuse_blink(const diagnosis::Measurement& measurement, const ModelChannels& chosen) {
   const double length_s = static_cast<double>(measurement.size()) / measurement.rate_hz;
-  const std::string hand = hands_channel(measurement);
+  const std::string hand = hands_channel(measurement, chosen);
   if (hand.empty() || measurement.rate_hz < kFast_hz || length_s >= kBlink_s) return;
   throw ConfigError(
       measurement.source + ", time",
@@ -70,8 +96,8 @@ void refuse_blink(const diagnosis::Measurement& measurement) {
 
 // A table whose 't [s]' holds milliseconds looks like one of a very slow sensor.  Slow sensors
 // exist, but none measures the motion or the force of a hand.
-void refuse_slow_hand(const diagnosis::Measurement& measurement) {
-  const std::string hand = hands_channel(measurement);
+void refuse_slow_hand(const diagnosis::Measurement& measurement, const ModelChannels& chosen) {
+  const std::string hand = hands_channel(measurement, chosen);
   if (hand.empty() || measurement.rate_hz >= kLeastHandRate_hz) return;
   throw ConfigError(measurement.source + ", time",
                     fmt::format("{:.4g} s between rows of {}", 1.0 / measurement.rate_hz, hand),
@@ -148,10 +174,11 @@ diagnosis::Measurement read_table(const std::string& path, const ReadOptions& op
   ask_if_needed(*file, options, mapping);
   MappedRows mapped = apply_mapping(*file, mapping);
   file.reset();  // a text is as large as its numbers
+  convert_chosen(mapped.rows, options.channels, mapped.notes);
   diagnosis::Measurement out =
       screened(std::move(mapped.rows), options, mapped.notes, mapped.back_steps);
-  refuse_blink(out);
-  refuse_slow_hand(out);
+  refuse_blink(out, options.channels);
+  refuse_slow_hand(out, options.channels);
   return out;
 }
 

@@ -4,10 +4,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "apps/libraries/measurement/tables/ask.hpp"
+#include "apps/libraries/measurement/tables/bag_table.hpp"
+#include "apps/libraries/measurement/tables/suggestion.hpp"
 #include "apps/libraries/report/command_line.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
 
 namespace stillhand::measurement {
@@ -82,6 +86,39 @@ std::string words_of(const ReadOptions& options) {
   }
   if (mapping.rate_hz) words += fmt::format(" --sample-rate {}", *mapping.rate_hz);
   return words;
+}
+
+void require_channels(const diagnosis::Measurement& measurement,
+                      const std::vector<std::string>& names, const ReadOptions& options) {
+  const auto missing = std::ranges::find_if(
+      names, [&](const std::string& name) { return measurement.find(name) == nullptr; });
+  if (missing == names.end()) return;
+  std::string want;
+  for (const diagnosis::Channel& each : measurement.channels) {
+    want += (want.empty() ? "one of " : ", ") + each.name;
+  }
+  const std::string& path = measurement.source;
+  const bool is_table = kind_of(path) != FileKind::kMcap || !is_session(path);
+  if (is_table && options.mapping.columns.empty() && options.map_file.empty()) {
+    want += "; " + words_to_add(*open_table(path, options.mapping.form, options.most_values));
+  }
+  throw ConfigError(path, "no channel '" + *missing + "'", want);
+}
+
+std::string step_for(const std::string& reason) {
+  if (reason == "unit") {
+    return "correct the unit: --map 'TITLE=NAME [UNIT]' for every column, with the unit that the "
+           "values have";
+  }
+  if (reason == "sign") return "correct the sign of one recording: --map 'TITLE=NAME [UNIT] * -1'";
+  if (reason == "swapped") return "check which column is which: --input, --output or --map";
+  if (reason == "clocks") return "shift one column by that time, or record both by one clock";
+  if (reason == "samples") return "record again, or name another column: --input, --output";
+  if (reason == "copy") return "name another column: --input, --output";
+  if (reason == "filter") return "the same command with a lower --order";
+  return "check that the columns are of one rig and one ride, and their names: --input, --output "
+         "or "
+         "--map";
 }
 
 }  // namespace stillhand::measurement

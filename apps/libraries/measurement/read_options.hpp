@@ -19,4 +19,15 @@ std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options)
 /// each; empty: nothing was stated.
 std::string words_of(const ReadOptions& options);
 
+/// @param names   channels that the verb can't do without
+/// @throws stillhand::ConfigError for one that the recording lacks, with those that it has and, of
+/// a
+///         table without a mapping, the --map that may help.
+void require_channels(const diagnosis::Measurement& measurement,
+                      const std::vector<std::string>& names, const ReadOptions& options);
+
+/// What to do next where a recording gives no model.
+/// @param reason  of diagnosis::NoModel
+std::string step_for(const std::string& reason);
+
 }  // namespace stillhand::measurement

@@ -6,7 +6,9 @@
 
 #include <fstream>
 #include <functional>
+#include <set>
 
+#include "apps/libraries/measurement/read_options.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -14,6 +16,7 @@ namespace stillhand::measurement {
 namespace {
 
 using diagnosis::Measurement;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -58,6 +61,42 @@ TEST(ReadTest, ATableIsReadWithEveryChannelAndUnit) {
   EXPECT_EQ(sut.channels[2].name, "temp");
   EXPECT_EQ(sut.channels[2].unit, "degC");
   EXPECT_DOUBLE_EQ(sut.find("f")->values[20], -0.3 * 7);
+}
+
+std::string with_titles(const std::string& titles) {
+  std::string text = table(100);
+  return titles + text.substr(text.find('\n'));
+}
+
+TEST(ReadTest, AChosenColumnIsReadInTheUnitInWhichAHandIsJudged) {
+  ReadOptions options;
+  options.channels = {{"Acc Y"}, "Grip force"};
+  const Measurement sut = read_measurement(
+      file_of(with_titles("Time (s),Acc Y (g),Grip force (kN),temp (degC)")), options);
+  EXPECT_EQ(sut.find("Acc Y")->unit, "m/s^2");
+  EXPECT_DOUBLE_EQ(sut.find("Acc Y")->values[20], 0.1 * 3 * 9.80665);
+  EXPECT_EQ(sut.find("Grip force")->unit, "N");
+  EXPECT_DOUBLE_EQ(sut.find("Grip force")->values[20], -0.3 * 7 * 1000.0);
+  EXPECT_EQ(sut.find("temp")->unit, "degC");
+}
+
+TEST(ReadTest, TitlesThatNameNoChannelOfTheModelComeWithTheWordsThatMapThem) {
+  const Measurement sut =
+      read_measurement(file_of(with_titles("Time (s),Acc Y (g),Grip force (N),temp (degC)")));
+  EXPECT_THAT(
+      support::refusal([&] { require_channels(sut, {"a_y", "f"}, {}); }),
+      AllOf(HasSubstr("no channel 'a_y', want one of Acc Y, Grip force, temp; "),
+            HasSubstr("--map 'Time (s)=t [s]' 'Acc Y (g)=a_y [g]' 'Grip force (N)=f [N]'")));
+  require_channels(sut, {"Acc Y", "Grip force"}, {});
+}
+
+TEST(ReadTest, EveryReasonAgainstAModelHasAStepThatMendsIt) {
+  EXPECT_THAT(step_for("unit"), HasSubstr("--map 'TITLE=NAME [UNIT]'"));
+  EXPECT_THAT(step_for("filter"), HasSubstr("--order"));
+  std::set<std::string> steps;
+  for (const char* reason : {"unit", "sign", "swapped", "clocks", "samples", "copy", "unrelated"}) {
+    EXPECT_TRUE(steps.insert(step_for(reason)).second) << reason;
+  }
 }
 
 TEST(ReadTest, TheKindIsToldByTheContentNotTheName) {

@@ -63,16 +63,19 @@ Mapping suggestion(TableFile& file) {
   return guess;
 }
 
-void refuse_titles(TableFile& file) {
+std::string words_to_add(TableFile& file) {
   const TableHead& head = file.head();
   const Mapping guess = suggestion(file);
   const bool timed =
       head.has_times || head.rate_hz > 0.0 ||
       std::ranges::find(guess.columns, "t", &ColumnWish::name) != guess.columns.end();
-  throw ConfigError(head.path, "the columns " + titles_of(head),
-                    "'t [s]' and 'name [unit]'; if they are these, add " +
-                        in_one_line(command_words(guess)) + (timed ? "" : " --sample-rate HZ") +
-                        " (or --map-file FILE, to be asked)");
+  return "if they are these, add " + in_one_line(command_words(guess)) +
+         (timed ? "" : " --sample-rate HZ") + " (or --map-file FILE, to be asked)";
+}
+
+void refuse_titles(TableFile& file) {
+  throw ConfigError(file.head().path, "the columns " + titles_of(file.head()),
+                    "'t [s]' and 'name [unit]'; " + words_to_add(file));
 }
 
 }  // namespace stillhand::measurement
