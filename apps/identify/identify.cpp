@@ -129,6 +129,7 @@ void fit(const identification::Record& recorded, const identification::Record& f
                                                            : steps.paper_unusable;
   } catch (const ConfigError& error) {
     out.unusable = error.what();
+    out.reason = "filter";
     out.model.refined = config.refine || !paper.stable;
     if (out.model.refined)
       out.why_refined = config.refine ? "as requested" : "the paper's fit is unstable";
@@ -181,6 +182,8 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   out.source = measurement.source;
   out.input = input.name;
   out.input_unit = input.unit;
+  out.excited = diagnosis::excited_band(input.name, recorded.acceleration_m_s2,
+                                        mean_of(recorded.acceleration_m_s2), measurement.rate_hz);
   out.output = output.name;
   out.output_unit = output.unit;
   out.rate_hz = measurement.rate_hz;
@@ -200,8 +203,9 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
                       "a measured response to the input");
   }
   fit(recorded, fitted, options.config, out);
-  if (const std::string why = why_worthless(measurement, options, fitted, out); !why.empty()) {
-    out.unusable = why;
+  if (auto none = why_worthless(measurement, options, fitted, out)) {
+    out.unusable = std::move(none->why);
+    out.reason = std::move(none->reason);
   }
   divide(out.model.fit.numerator, scale);
   divide(out.model.control.numerator, scale);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "services/core/diagnosis/excited_band.hpp"
 #include "services/core/diagnosis/measurement.hpp"
 #include "services/core/identification/frequency_response.hpp"
 #include "services/core/identification/identifier.hpp"
@@ -36,8 +37,10 @@ struct IdentifyResult {
   std::vector<diagnosis::SampleFault> screening;
   /// `control` is empty if `unusable` is not.
   identification::FeedthroughModel model;
-  std::string why_refined;  ///< reason for the refinement; empty: the paper's least squares
-  std::string unusable;     ///< why the canceller can't use it; empty: it can
+  std::string why_refined;         ///< reason for the refinement; empty: the paper's least squares
+  std::string unusable;            ///< why the canceller can't use it; empty: it can
+  std::string reason;              ///< of that, in a word: one of NoModel's, "effects" or "filter"
+  diagnosis::ExcitedBand excited;  ///< of the input, DG-65
   double dc_gain_db = 0.0;
   std::optional<Notch> notch;
   std::vector<identification::ResponsePoint> response;  ///< of the model, at its own rate

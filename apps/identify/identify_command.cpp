@@ -68,8 +68,10 @@ int run(const Arguments& arguments) {
                             {arguments.recording, arguments.read.map_file});
   measurement::ReadOptions read = arguments.read;
   read.channels = {{arguments.identify.input}, arguments.identify.output};
-  const IdentifyResult result =
-      identify(measurement::read_measurement(arguments.recording, read), arguments.identify);
+  const diagnosis::Measurement measured = measurement::read_measurement(arguments.recording, read);
+  measurement::require_channels(measured, {arguments.identify.input, arguments.identify.output},
+                                read);
+  const IdentifyResult result = identify(measured, arguments.identify);
   if (files.wants("--save")) {
     if (!result.unusable.empty()) {
       throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",
@@ -80,8 +82,11 @@ int run(const Arguments& arguments) {
   if (files.wants("--json")) files.set_json("--json", result_json(result));
   files.publish();
   std::fputs(result_table(result).c_str(), stdout);
-  report::say_next("stillhand diagnose " + report::quoted_for_shell(arguments.recording) +
-                   measurement::words_of(arguments.read) + " says what this model lacks");
+  const bool to_diagnose = result.unusable.empty() || result.reason == "effects";
+  report::say_next(to_diagnose
+                       ? "stillhand diagnose " + report::quoted_for_shell(arguments.recording) +
+                             measurement::words_of(arguments.read) + " says what this model lacks"
+                       : measurement::step_for(result.reason));
   return 0;
 }
 
@@ -103,9 +108,10 @@ void add_identify_command(CLI::App& cli, int& status) {
   verb->add_option("--order", arguments->identify.config.order, "order of the model")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
-  verb->add_flag(
-      "--refine", arguments->identify.config.refine,
-      "refine the fit on its free-run error; the verb does so by itself if the fit is unstable");
+  verb->add_flag("--refine", arguments->identify.config.refine,
+                 "refine the fit on its free-run error (the model predicts from the input alone); "
+                 "the verb does "
+                 "so by itself if the fit is unstable");
   verb->add_option("--input", arguments->identify.input, "input channel of the model")
       ->capture_default_str();
   verb->add_option("--output", arguments->identify.output, "output channel of the model")

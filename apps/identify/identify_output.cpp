@@ -9,6 +9,8 @@
 #include <numeric>
 
 #include "apps/libraries/measurement/screening_json.hpp"
+#include "services/core/diagnosis/alignment.hpp"
+#include "services/core/diagnosis/share_words.hpp"
 #include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::identify {
@@ -62,32 +64,50 @@ std::string coefficient_table(const IdentifyResult& result) {
 std::string assumed_of(const IdentifyResult& result) {
   const auto sum = [](const std::vector<double>& x) { return std::reduce(x.begin(), x.end()); };
   const bool same = sum(result.model.fit.numerator) * sum(result.model.fit.denominator) > 0.0;
+  const std::string unchecked = diagnosis::why_unchecked(
+      {result.input, result.input_unit, 0.0, result.output, result.output_unit, 0.0});
   return fmt::format(
       "signs and units as the columns state them ({} has {} at 0 Hz); one recording does not show "
-      "whether they are right",
-      result.output, same ? "the sign of " + result.input : "not the sign of " + result.input);
+      "whether they are right{}",
+      result.output, same ? "the sign of " + result.input : "not the sign of " + result.input,
+      unchecked.empty() ? "" : "; " + unchecked);
+}
+
+// What the recording does not show at a frequency.
+std::string beyond(const IdentifyResult& result, double frequency_hz) {
+  const bool inside =
+      frequency_hz >= result.excited.low_hz && frequency_hz <= result.excited.high_hz;
+  return inside ? "" : ", of the model alone: outside of the excited band";
 }
 
 std::string quality_lines(const IdentifyResult& result) {
   const auto& heldout = result.model.heldout;
-  std::string text = fmt::format(
-      "stable             {}\n"
-      "free run, unseen   VAF {:.2f} %, RMS error {:.4g} {} (last quarter, fit to the rest)\n"
-      "one step, unseen   VAF {:.2f} %\n"
-      "condition number   {:.3g}\n"
-      "gain at 0 Hz       {:.2f} dB\n",
-      signal::is_stable(result.model.fit) ? "yes" : "no", heldout.free_run_vaf_percent,
-      heldout.free_run_rms_n, result.output_unit, heldout.one_step_vaf_percent,
-      result.model.condition_number, result.dc_gain_db);
-  text += result.notch ? fmt::format("notch              {:.2f} Hz, {:.1f} dB\n",
-                                     result.notch->frequency_hz, result.notch->magnitude_db)
+  std::string text =
+      fmt::format("stable             {}\n", signal::is_stable(result.model.fit) ? "yes" : "no");
+  text += fmt::format(
+      "free run, unseen   {}, RMS error {:.4g} {} (last quarter, fit to the rest, from the input "
+      "alone; VAF: share of "
+      "the variance explained)\n",
+      diagnosis::vaf_in_words(heldout.free_run_vaf_percent), heldout.free_run_rms_n,
+      result.output_unit);
+  // The next sample alone is known well enough from the last one.
+  if (result.unusable.empty()) {
+    text += fmt::format("one step, unseen   {}\n",
+                        diagnosis::vaf_in_words(heldout.one_step_vaf_percent));
+  }
+  text += fmt::format("condition number   {:.3g}\n", result.model.condition_number);
+  text += fmt::format("excited band       {:.3g} to {:.3g} Hz, 98 % of the power of {}\n",
+                      result.excited.low_hz, result.excited.high_hz, result.input);
+  text += fmt::format("gain at 0 Hz       {:.2f} dB{}\n", result.dc_gain_db, beyond(result, 0.0));
+  text += result.notch ? fmt::format("notch              {:.2f} Hz, {:.1f} dB{}\n",
+                                     result.notch->frequency_hz, result.notch->magnitude_db,
+                                     beyond(result, result.notch->frequency_hz))
                        : "notch              none from 0.5 to 10 Hz\n";
   text += "assumed            " + assumed_of(result) + "\n";
-  text +=
-      result.unusable.empty()
-          ? fmt::format("filter at 1 kHz    within {:.2f} % of the model's peak gain, 0 to 10 Hz\n",
-                        100.0 * result.model.conversion_error)
-          : fmt::format("usable             no: {}\n", result.unusable);
+  if (result.unusable.empty()) {
+    text += fmt::format("filter at 1 kHz    within {:.2f} % of the model's peak gain, 0 to 10 Hz\n",
+                        100.0 * result.model.conversion_error);
+  }
   return text;
 }
 
@@ -116,9 +136,11 @@ std::string result_json(const IdentifyResult& result) {
       {"why_refined", result.why_refined},
       {"condition_number", result.model.condition_number},
       {"dc_gain_db", result.dc_gain_db},
+      {"excited_band_hz", {result.excited.low_hz, result.excited.high_hz}},
       {"notch_hz", result.notch ? ordered_json(result.notch->frequency_hz) : nullptr},
       {"usable", usable},
       {"why", result.unusable},
+      {"reason", result.reason},
       {"text", result.unusable},
       {"assumed", assumed_of(result)},
       {"screening", measurement::screening_json(result.screening)},
@@ -133,7 +155,9 @@ std::string result_json(const IdentifyResult& result) {
 }
 
 std::string result_table(const IdentifyResult& result) {
-  std::string text = "recording          " + result.source + "\n";
+  std::string text =
+      result.unusable.empty() ? "" : "usable             no: " + result.unusable + "\n";
+  text += "recording          " + result.source + "\n";
   for (const std::string& note : result.notes) text += "                   " + note + "\n";
   text += fmt::format("input, output      {} [{}], {} [{}]\n", result.input, result.input_unit,
                       result.output, result.output_unit);

@@ -9,12 +9,18 @@
 #include "apps/identify/changed_output.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/alignment.hpp"
+#include "services/core/diagnosis/before_effects.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
+#include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::identify {
 namespace {
 
 using diagnosis::Measurement;
+using diagnosis::NoModel;
+
+// [-] of the squared error that another reading of the recording must leave at most.
+constexpr double kBetterReading = 0.5;
 
 double vaf_after(const diagnosis::Alignment& by, const identification::Record& fitted,
                  const IdentifyOptions& options, bool refined = false) {
@@ -26,6 +32,19 @@ double vaf_after(const diagnosis::Alignment& by, const identification::Record& f
              : arx.heldout.free_run_vaf_percent;
 }
 
+// What the paper's fit of the input to the output leaves; all, where there is none or none that is
+// stable.
+double left_exchanged(const identification::Record& fitted, const IdentifyOptions& options) {
+  try {
+    const auto other =
+        identification::fit_arx({fitted.rate_hz, fitted.force_n, fitted.acceleration_m_s2},
+                                static_cast<int>(options.config.order));
+    return other.stable ? 1.0 - 0.01 * other.heldout.free_run_vaf_percent : 1.0;
+  } catch (const ConfigError&) {
+    return 1.0;  // the output alone excites nothing
+  }
+}
+
 // Eq. DG-81; empty: the future of the input explains no more.
 std::string why_future(const IdentifyOptions& options, const identification::Record& fitted,
                        double left, bool refined) {
@@ -33,10 +52,11 @@ std::string why_future(const IdentifyOptions& options, const identification::Rec
   for (const double lead_s : diagnosis::kLeads_s) {
     const double vaf = vaf_after({-lead_s, 0.0, 0.0}, fitted, options, refined);
     if (!(1.0 - 0.01 * vaf < diagnosis::kBetterLead * left)) continue;
-    return fmt::format(
-        "{0} leads {1}: a model that knows {1} {2:g} s ahead leaves {3:.3g} % of {0}, this one "
-        "{4:.3g} %: the columns may be swapped, or {1} comes late",
-        options.output, options.input, lead_s, 100.0 - vaf, 100.0 * left);
+    const double back = left_exchanged(fitted, options);
+    return back < kBetterReading * left
+               ? diagnosis::swapped_in_words(options.input, 1.0 - back, options.output, 1.0 - left)
+               : diagnosis::lead_in_words(options.input, options.output, lead_s, 1.0 - 0.01 * vaf,
+                                          left);
   }
   return {};
 }
@@ -56,9 +76,6 @@ std::string why_clipped(const Measurement& measurement, const IdentifyOptions& o
   }
   return {};
 }
-
-// [-] of the squared error that a reading of the same prediction must leave at most.
-constexpr double kBetterReading = 0.5;
 
 // What the paper's fit to a record leaves of all of it; all, where there is none.
 double left_of_all(const identification::Record& record, const IdentifyOptions& options) {
@@ -147,18 +164,9 @@ std::string why_exchanged(const IdentifyOptions& options, const identification::
                           double left) {
   const auto order = static_cast<int>(options.config.order);
   if (left < diagnosis::kLeadGate || identification::fit_arx(fitted, order).stable) return {};
-  try {
-    const auto other =
-        identification::fit_arx({fitted.rate_hz, fitted.force_n, fitted.acceleration_m_s2}, order);
-    const double left_other = 1.0 - 0.01 * other.heldout.free_run_vaf_percent;
-    if (!other.stable || !(left_other < diagnosis::kBetterLead * left)) return {};
-    return fmt::format(
-        "{0} leaves {2:.3g} % of {1}, and {1} {3:.3g} % of {0}: the columns may be "
-        "swapped",
-        options.output, options.input, 100.0 * left_other, 100.0 * left);
-  } catch (const ConfigError&) {
-    return {};  // the output alone excites nothing
-  }
+  const double back = left_exchanged(fitted, options);
+  if (!(back < diagnosis::kBetterLead * left)) return {};
+  return diagnosis::swapped_in_words(options.input, 1.0 - back, options.output, 1.0 - left);
 }
 
 }  // namespace
@@ -178,21 +186,29 @@ double rms_about_mean(const std::vector<double>& values) {
   return std::sqrt(squares);
 }
 
-std::string why_worthless(const Measurement& measurement, const IdentifyOptions& options,
-                          const identification::Record& fitted, const IdentifyResult& result) {
-  if (std::string why = why_unsound(measurement, {options.input, options.output}); !why.empty()) {
-    return why;
+std::optional<NoModel> why_worthless(const Measurement& measurement, const IdentifyOptions& options,
+                                     const identification::Record& fitted,
+                                     const IdentifyResult& result) {
+  if (auto none = diagnosis::before_any_fit(measurement, {options.input}, options.output)) {
+    return none;
   }
-  if (std::string why = why_clipped(measurement, options); !why.empty()) return why;
+  if (std::string why = why_clipped(measurement, options); !why.empty()) {
+    return NoModel{"effects", std::move(why)};
+  }
   const double left = 1.0 - 0.01 * result.model.heldout.free_run_vaf_percent;
   std::string mass = diagnosis::unlikely_mass(
       {options.input, result.input_unit, rms_about_mean(fitted.acceleration_m_s2), options.output,
        result.output_unit, std::sqrt(std::max(0.0, 1.0 - left)) * rms_about_mean(fitted.force_n)});
-  if (left < 0.5 && !mass.empty()) return mass;
-  if (std::string why = why_changed(options, fitted, result); !why.empty()) return why;
-  if (std::string why = why_exchanged(options, fitted, left); !why.empty()) return why;
-  if (std::string why = why_future(options, fitted, left, result.model.refined); !why.empty())
-    return why;
+  if (left < 0.5 && !mass.empty()) return NoModel{"unit", std::move(mass)};
+  if (std::string why = why_changed(options, fitted, result); !why.empty()) {
+    return NoModel{"effects", std::move(why)};
+  }
+  if (std::string why = why_exchanged(options, fitted, left); !why.empty()) {
+    return NoModel{"swapped", std::move(why)};
+  }
+  if (std::string why = why_future(options, fitted, left, result.model.refined); !why.empty()) {
+    return NoModel{"swapped", std::move(why)};
+  }
   if (left <= diagnosis::kAlignmentGate) return {};
   const diagnosis::Alignment alignment =
       diagnosis::aligned(fitted.acceleration_m_s2, fitted.force_n, fitted.rate_hz);
@@ -205,16 +221,19 @@ std::string why_worthless(const Measurement& measurement, const IdentifyOptions&
     best = each;
   }
   if (1.0 - 0.01 * most < diagnosis::kBetterClock * left) {
-    return fmt::format("{}: a model after that explains {:.4g} % instead of {:.4g} %",
-                       diagnosis::in_words(best), most, result.model.heldout.free_run_vaf_percent);
+    return NoModel{
+        "clocks",
+        fmt::format("{}: a model after that explains {} instead of {}", diagnosis::in_words(best),
+                    diagnosis::share_in_words(0.01 * most), diagnosis::share_in_words(1.0 - left))};
   }
   if (left <= 1.0 - diagnosis::kLeastShare) return {};
-  return fmt::format(
-      "{} explains {:.3g} % of {} on samples that the fit has not seen, {:g} % or "
-      "more would be something: these channels don't belong together, or no linear model joins "
-      "them",
-      options.input, result.model.heldout.free_run_vaf_percent, options.output,
-      100.0 * diagnosis::kLeastShare);
+  return NoModel{
+      "unrelated",
+      fmt::format("{} explains {} of {} on samples that the fit has not seen, {:g} % or more would "
+                  "be something: these channels don't belong together, or no linear model joins "
+                  "them",
+                  options.input, diagnosis::share_in_words(1.0 - left), options.output,
+                  100.0 * diagnosis::kLeastShare)};
 }
 
 }  // namespace stillhand::identify

@@ -227,9 +227,12 @@ RateConversion to_control_rate(const DifferenceModel& model, const ConversionBan
     if (now.max_error < best.max_error) best = now;
   }
   if (!(best.max_error <= band.max_error)) {
-    throw ConfigError("rate_conversion.max_error", std::to_string(best.max_error),
-                      "at most " + std::to_string(band.max_error) +
-                          " of the excited band's peak gain; a lower order converts better");
+    const auto percent = [](double share) {
+      return std::to_string(std::round(1000.0 * share) / 10.0).substr(0, 4) + " %";
+    };
+    throw ConfigError("filter at 1 kHz for this model",
+                      "an error of " + percent(best.max_error) + " of the peak gain",
+                      "at most " + percent(band.max_error) + "; a lower order converts better");
   }
   best.peak_gain = peak_gain(best.model);
   return best;

@@ -8,6 +8,7 @@
 #include <complex>
 #include <numbers>
 
+#include "apps/identify/identify_output.hpp"
 #include "apps/libraries/measurement/grid.hpp"
 #include "apps/libraries/measurement/sample_screen.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -122,6 +123,58 @@ TEST(IdentifyTest, AnInputInAnotherUnitIsJudgedByItsShapeAlone) {
               1e-6);
 }
 
+// Of the units, and not of the columns' names.
+TEST(IdentifyTest, AMassThatIsNoHandsIsNotUsableUnderAnyName) {
+  Measurement other = pegged_body();
+  other.channels[0].name = "Acc Y";
+  other.channels[1].name = "Grip force";
+  for (double& value : other.channels[1].values) value *= 1e3;
+  IdentifyOptions options;
+  options.input = "Acc Y";
+  options.output = "Grip force";
+  const IdentifyResult sut = identify(other, options);
+  EXPECT_THAT(sut.unusable, HasSubstr("one of the units is wrong"));
+  EXPECT_EQ(sut.reason, "unit");
+  other.channels[1].unit = "V";
+  EXPECT_THAT(result_table(identify(other, options)),
+              HasSubstr("units not checked, because only a motion in m/s^2 and a force in N have a "
+                        "hand's mass, and these are Acc Y [m/s^2] and Grip force [V]"));
+}
+
+// Twenty times the input, both rounded as a logger writes them.
+TEST(IdentifyTest, ACopyOfTheInputIsNoResponseToIt) {
+  auto input = support::band_noise(30'000, 1000.0, 0.7, 4.0, 1.0, 4);
+  auto output = input;
+  for (double& value : output) value = std::round(20.0 * value * 1e3) / 1e3;
+  for (double& value : input) value = std::round(value * 1e5) / 1e5;
+  const IdentifyResult sut = identify(measured(1000.0, input, output), {});
+  EXPECT_THAT(sut.unusable, HasSubstr("f is a constant times a_y (20): one sensor twice?"));
+  EXPECT_EQ(sut.reason, "copy");
+}
+
+// The motion's skirts end before the body's notch of 6.0 Hz, and above 0 Hz.
+TEST(IdentifyTest, WhatTheMotionDoesNotExciteIsMarked) {
+  const IdentifyResult sut = identify(pegged_body(), {});
+  EXPECT_NEAR(sut.excited.low_hz, 0.7, 0.3);
+  EXPECT_GT(sut.excited.high_hz, 4.0);
+  EXPECT_LT(sut.excited.high_hz, sut.notch->frequency_hz);
+  const std::string text = result_table(sut);
+  EXPECT_THAT(text, testing::ContainsRegex("excited band +0\\.[0-9]+ to [4-6]\\.?[0-9]* Hz"));
+  EXPECT_THAT(text, testing::ContainsRegex("gain at 0 Hz [^\n]*outside of the excited band"));
+  EXPECT_THAT(text, testing::ContainsRegex("notch [^\n]*outside of the excited band"));
+}
+
+TEST(IdentifyTest, WhatIsNotUsableIsSaidFirstAndWithoutTheErrorOfOneStep) {
+  IdentifyResult sut = identify(pegged_body(), {});
+  EXPECT_THAT(result_table(sut), HasSubstr("one step, unseen"));
+  sut.unusable = "swapped";
+  sut.model.heldout.free_run_vaf_percent = -1e34;
+  const std::string text = result_table(sut);
+  EXPECT_THAT(text, testing::StartsWith("usable             no: swapped\n"));
+  EXPECT_THAT(text, HasSubstr("VAF below -100 % (worse than the mean)"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("one step, unseen")));
+}
+
 TEST(IdentifyTest, OfSeveralStretchesTheLongestIsUsed) {
   Measurement sut = pegged_body();
   sut.stretches = {{0, 8000, 0.0}, {8000, 30'000, 20.0}, {30'000, 40'000, 60.0}};
@@ -206,7 +259,7 @@ TEST(IdentifyTest, WithoutAFilterForTheCancellerTheFitIsStillGiven) {
   options.config.order = 1;
   const IdentifyResult sut =
       identify(measured(100.0, record.acceleration_m_s2, record.force_n), options);
-  EXPECT_THAT(sut.unusable, HasSubstr("rate_conversion"));
+  EXPECT_THAT(sut.unusable, HasSubstr("filter at 1 kHz for this model: got an error of "));
   EXPECT_TRUE(signal::is_stable(sut.model.fit));
   EXPECT_GT(sut.model.heldout.one_step_vaf_percent, 90.0);
 }
