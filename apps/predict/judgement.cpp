@@ -11,6 +11,8 @@
 
 #include "apps/libraries/measurement/screening_json.hpp"
 #include "apps/libraries/report/or_null.hpp"
+#include "services/core/diagnosis/alignment.hpp"
+#include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::predict {
 namespace {
@@ -72,8 +74,37 @@ ordered_json json_of(const Score& score) {
 }
 
 std::string line_of(const char* name, const Score& score, const std::string& unit) {
-  return fmt::format("{:<9}RMSE {:.4g} {}, VAF {:.2f} %, fit {:.2f} %\n", name, score.rmse, unit,
-                     score.vaf_percent, score.fit_percent);
+  return fmt::format(
+      "{:<9}RMSE {:.4g} {}, {}, fit {}\n", name, score.rmse, unit,
+      diagnosis::vaf_in_words(score.vaf_percent),
+      score.fit_percent < -100.0 ? "below -100 %" : fmt::format("{:.2f} %", score.fit_percent));
+}
+
+// Eq. DG-79, the gain of one of several recordings: a unit or a sign that is not that of
+// the recording to which the model was fitted.
+std::string why_unusable(const recording::Column& measured, const std::vector<bool>& given,
+                         const std::vector<double>& predicted) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (std::size_t n = 0; n < given.size(); ++n) {
+    if (given[n]) continue;
+    x.push_back(predicted[n]);
+    y.push_back(measured.values[n]);
+  }
+  constexpr double kClearly = 0.5;  // of the power; with that explained, chance is no question
+  const auto [gain, share] = diagnosis::likeness(x, y);
+  if (share < kClearly) return {};
+  if (gain < 0.0) {
+    return fmt::format(
+        "{0} follows the prediction with the other sign ({1:.3g} times): the sign of "
+        "an input or of {0} is wrong",
+        measured.name, gain);
+  }
+  if (gain <= diagnosis::kAnotherUnit && gain >= 1.0 / diagnosis::kAnotherUnit) return {};
+  return fmt::format(
+      "{0} is {1:.3g} times what the model predicts: the unit of an input or of {0} is "
+      "wrong",
+      measured.name, gain);
 }
 
 }  // namespace
@@ -96,6 +127,7 @@ std::optional<Judgement> judged(Prediction& prediction,
   judgement.measured = {output->name, output->unit,
                         at_rows(judgement.time_s, *output, measurement)};
   judgement.carried = judged_against(judgement.measured.values, prediction.given, model.values);
+  judgement.unusable = why_unusable(judgement.measured, prediction.given, judgement.carried.values);
   if (linear) {
     Prediction without = predict(diagnosis::carried_as_it_is(*linear), measurement, start_samples);
     judgement.linear = judged_against(judgement.measured.values, prediction.given,
@@ -106,7 +138,8 @@ std::optional<Judgement> judged(Prediction& prediction,
 
 std::string judgement_table(const Judgement& judgement) {
   const std::string& unit = judgement.measured.unit;
-  return (judgement.linear ? line_of("linear", judgement.linear->score, unit) : std::string()) +
+  return (judgement.unusable.empty() ? "" : "usable   no: " + judgement.unusable + "\n") +
+         (judgement.linear ? line_of("linear", judgement.linear->score, unit) : std::string()) +
          line_of("carried", judgement.carried.score, unit);
 }
 
@@ -118,10 +151,16 @@ std::string judgement_json(const Prediction& prediction, const std::optional<Jud
                     {"samples", prediction.table.row_count()},
                     {"linear", nullptr},
                     {"carried", nullptr},
+                    {"usable", nullptr},
+                    {"why", ""},
                     {"screening", measurement::screening_json(prediction.screening)},
                     {"notes", prediction.notes},
                     {"provenance", nullptr}};
   if (judgement) json["carried"] = json_of(judgement->carried.score);
+  if (judgement) {
+    json["usable"] = judgement->unusable.empty();
+    json["why"] = judgement->unusable;
+  }
   if (judgement && judgement->linear) json["linear"] = json_of(judgement->linear->score);
   if (origin) json["provenance"] = report::json_of(*origin);
   return json.dump(2) + "\n";

@@ -38,6 +38,7 @@ struct Judgement {
   double rate_hz = 0.0;
   Judged carried;
   std::optional<Judged> linear;  ///< none: the model file holds no linear model
+  std::string unusable = {};     ///< a unit or a sign that is wrong, in the model or the recording
 };
 
 /// @param prediction  of the carried model over the measurement; its notes may grow

@@ -129,6 +129,21 @@ struct Prepared {
   Measurement working;  // at the model's rate
 };
 
+// Each input, in the unit in which the model was fitted.
+void check_inputs(const diagnosis::CarriedModel& carried, const Measurement& measurement) {
+  for (const std::string& name : carried.model.inputs) {
+    const diagnosis::Channel* channel = measurement.find(name);
+    if (channel == nullptr) continue;  // named where the signals are made
+    const auto range = std::ranges::find(carried.inputs, name, &diagnosis::SeenRange::of);
+    if (range == carried.inputs.end() || range->unit.empty() || range->unit == channel->unit) {
+      continue;
+    }
+    throw ConfigError(measurement.source + ": input '" + name + "'",
+                      "values in [" + channel->unit + "]",
+                      "[" + range->unit + "], in which the model was fitted");
+  }
+}
+
 Prepared prepared(const diagnosis::Model& model, const Measurement& measurement) {
   Prepared made{model, measurement, 1, {}};
   Measurement& whole = made.whole;
@@ -186,6 +201,7 @@ diagnosis::Signals started_from_output(const Prepared& made, const diagnosis::Si
 
 Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& measurement,
                    std::size_t start_samples) {
+  check_inputs(carried, measurement);
   const Prepared made = prepared(carried.model, measurement);
   const diagnosis::Model& model = carried.model;
   const diagnosis::Signals measured(made.working, model.inputs, model.output);

@@ -79,6 +79,7 @@ int run(const Arguments& arguments) {
   measurement::ReadOptions read = arguments.read;
   read.channels = {models.carried.model.inputs, models.carried.model.output};
   const diagnosis::Measurement measured = measurement::read_measurement(arguments.recording, read);
+  measurement::require_channels(measured, models.carried.model.inputs, read);
   Prediction prediction = predict(models.carried, measured, arguments.start_samples);
   const std::optional<Judgement> judgement =
       judged(prediction, models.linear, measured, arguments.start_samples);
@@ -111,8 +112,9 @@ void add_predict_command(CLI::App& cli, int& status) {
   CLI::App* verb = cli.add_subcommand(
       "predict",
       "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\nIf "
-      "the recording holds the output too, the verb prints RMSE, VAF and fit, of the linear "
-      "model\nand of the carried one. The carried model is the linear model with the effects that "
+      "the recording holds the output too, the verb prints RMSE, VAF (the share of the "
+      "variance that is\nexplained) and fit, of the linear model and of the carried one. The "
+      "carried model is the linear model with the effects that "
       "hold in\nanother recording. A tone, a drift, a burst and a changing gain do not: they are "
       "left out.\nOutside of the range of the first recording, an effect keeps its value at the "
       "range's end.\nA note reports each case.\nExample: stillhand predict model.json ride.csv "

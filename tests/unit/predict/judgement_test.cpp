@@ -64,6 +64,21 @@ TEST(JudgementTest, HalfTheGainLeavesAQuarterOfTheVariance) {
   EXPECT_THAT(text, HasSubstr("VAF 75.00 %"));
 }
 
+TEST(JudgementTest, AnotherUnitOrSignOfTheOutputIsNotUsable) {
+  for (const auto& [by, said] :
+       {std::pair{1e3, "y is 1e+03 times what the model predicts: the unit"},
+        std::pair{1e-3, "y is 0.001 times"}, std::pair{-1.0, "with the other sign"}}) {
+    diagnosis::Measurement other = measured();
+    for (double& value : other.channels[1].values) value *= by;
+    Prediction prediction = predict(diagnosis::carried_as_it_is(kExact), other);
+    const Judgement sut = judged(prediction, {}, other).value();
+    EXPECT_THAT(judgement_table(sut), testing::StartsWith("usable   no: "));
+    EXPECT_THAT(sut.unusable, HasSubstr(said));
+    EXPECT_EQ(json::parse(judgement_json(prediction, sut, {}))["usable"], false);
+  }
+  EXPECT_EQ(judgement_of(kHalf, {}).unusable, "");
+}
+
 TEST(JudgementTest, WithoutTheOutputThereIsNone) {
   diagnosis::Measurement inputs = measured();
   inputs.channels.pop_back();

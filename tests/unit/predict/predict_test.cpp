@@ -161,6 +161,17 @@ TEST(PredictTest, AMissingInputIsNamed) {
               HasSubstr("elbow"));
 }
 
+TEST(PredictTest, AnInputInAnotherUnitThanTheModelsIsRefused) {
+  diagnosis::CarriedModel carried =
+      diagnosis::carried_as_it_is(made::model_of(made::two_pole_body()));
+  carried.inputs = {{"u", "m/s^2", -1.0, 1.0}};
+  EXPECT_THAT(support::refusal([&] {
+                (void)stillhand::predict::predict(
+                    carried, made::measurement_of({{"u", "g", made::white(100, 8)}}));
+              }),
+              HasSubstr("input 'u': got values in [g], want [m/s^2]"));
+}
+
 TEST(PredictTest, AMissingChannelOfAnEffectIsNamed) {
   const Model model =
       made::model_of(made::two_pole_body(), {{"coupled_input", "static", {"grip"}, {}, {1.0}}});
