@@ -20,6 +20,7 @@
 #include "apps/libraries/report/staged_folder.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
 #include "services/core/diagnosis/verdict_stability.hpp"
 #include "services/files/diagnosis/model_file.hpp"
@@ -57,10 +58,25 @@ diagnosis::Measurement read_all(const Arguments& arguments) {
   std::vector<diagnosis::Measurement> parts;
   measurement::ReadOptions read = arguments.read;
   read.channels = {arguments.options.inputs, arguments.options.output};
+  std::vector<std::string> names = arguments.options.inputs;
+  names.push_back(arguments.options.output);
   for (const std::string& path : arguments.recordings) {
     parts.push_back(measurement::read_measurement(path, read));
+    measurement::require_channels(parts.back(), names, read);
   }
   return parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
+}
+
+// Of one input; a mass is no sum of several.
+void note_unchecked(const diagnosis::Measurement& measurement, diagnosis::Diagnosis& result) {
+  const std::vector<std::string>& inputs = result.options.inputs;
+  const std::string why =
+      inputs.size() > 1
+          ? "units not checked, because only one motion in m/s^2 and a force in N have a hand's "
+            "mass, and these are several inputs"
+          : diagnosis::why_unchecked({inputs.front(), measurement.find(inputs.front())->unit, 0.0,
+                                      result.options.output, result.output_unit, 0.0});
+  if (!why.empty()) result.notes.push_back(why);
 }
 
 int run(const Arguments& arguments) {
@@ -91,6 +107,7 @@ int run(const Arguments& arguments) {
     result.stability = diagnosis::verdict_stability(measurement, options, arguments.stability);
   }
   progress.finish();
+  note_unchecked(measurement, result);
   if (result.no_model && files.wants("--save")) {
     throw ConfigError("--save", "no model (" + result.no_model->why + ")",
                       "no --save, or recordings whose inputs explain the output");
@@ -105,6 +122,10 @@ int run(const Arguments& arguments) {
   std::fputs(diagnosis_table(result).c_str(), stdout);
   folder ? report::say_report(arguments.report)
          : report::say_next("the same command with --report DIR draws what was found");
+  if (result.no_model) {
+    report::say_next(measurement::step_for(result.no_model->reason));
+    return 0;
+  }
   report::say_next(arguments.save.empty()
                        ? "--save MODEL keeps the model, for `stillhand predict`"
                        : fmt::format("stillhand predict {} ANOTHER_RECORDING{} --out predicted.csv",
@@ -120,8 +141,9 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   CLI::App* verb = cli.add_subcommand(
       "diagnose",
       "Finds what the model lacks. Fits a linear model to the recording, takes the residual of "
-      "its\nfree run on samples that the fit has not seen, traces it to an effect, adds the "
-      "effect, and\nprints the error before and after. services/core/diagnosis/README.md lists the "
+      "its\nfree run (its prediction from the inputs alone) on samples that the fit has not seen, "
+      "traces\nit to an effect, adds the effect, and prints the error before and after. "
+      "services/core/diagnosis/README.md lists the "
       "kinds of effect.\nREC: the MCAP file of a session, or a CSV, MATLAB, HDF5, ROS 2 (MCAP) or "
       "sound file with\ncolumns 'name [unit]' and 't [s]'. For other columns, use --map. Several "
       "recordings of one rig\nare diagnosed together.\nExample: stillhand diagnose ride.csv "

@@ -12,6 +12,7 @@
 #include "apps/libraries/measurement/screening_json.hpp"
 #include "apps/libraries/report/or_null.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -75,7 +76,7 @@ ordered_json force_json(const Diagnosis& diagnosis, const FoundEffect& found) {
 // The same as a line of the table.
 std::string force_text(const Diagnosis& diagnosis, const FoundEffect& found) {
   const std::string text =
-      fmt::format("{:.3g} {} RMS of its own (95 %: {:.3g} to {:.3g})", found.explained.rms,
+      fmt::format("it explains {:.3g} {} RMS (95 %: {:.3g} to {:.3g})", found.explained.rms,
                   diagnosis.output_unit, found.explained.low, found.explained.high);
   if (found.counts) return text;
   return fmt::format("{}; does not count: less than {:.3g} N (--least-force)", text,
@@ -207,12 +208,12 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   };
   const auto add_error = [&](const char* name, const diagnosis::HeldOutError& error,
                              const char* how) {
-    add("{:<14}RMS error {:.4g} {}, VAF {:.2f} %{}\n", name, error.rmse, unit, error.vaf_percent,
-        how);
+    add("{:<14}RMS error {:.4g} {}, {}{}\n", name, error.rmse, unit,
+        diagnosis::vaf_in_words(error.vaf_percent), how);
   };
   add("verdict       {}{}\n", diagnosis.verdict(),
       !diagnosis.no_model && none_carried(diagnosis)
-          ? ", and the model that is saved carries none of them"
+          ? ", none of which would hold in another recording: --save keeps the linear model alone"
           : "");
   if (diagnosis.stability) add("stability     {}\n", stability_in_words(*diagnosis.stability));
   if (diagnosis.no_model) {
@@ -223,7 +224,9 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   add("model         {} from {} to {}, order {}, at {:.4g} Hz\n", diagnosis.model_class,
       inputs_of(diagnosis), diagnosis.options.output, diagnosis.baseline.model.body.order(),
       diagnosis.sample_rate_hz);
-  add_error("baseline", diagnosis.baseline_error, " (free run, held out)");
+  add_error("baseline", diagnosis.baseline_error,
+            " (from the inputs alone, on data that the fit has not seen; "
+            "VAF: share of the variance explained)");
   for (std::size_t e = 0; e < diagnosis.effects.size(); ++e) {
     const FoundEffect& found = diagnosis.effects[e];
     const std::string of = found.channel.empty() ? "" : " (" + found.channel + ")";
@@ -237,10 +240,11 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   }
   add_error("final", diagnosis.final_error, diagnosis.effects.empty() ? "" : " (with all effects)");
   if (!diagnosis.effects.empty()) {
-    add_error("carried", diagnosis.carried_error, " (the model that --save writes)");
+    add_error("saved", diagnosis.carried_error,
+              " (with what holds in another recording: the model of --save)");
   }
-  add("noise floor   {:.4g} {} ({:.4g} to {:.4g})\n", diagnosis.noise_floor.rmse, unit,
-      diagnosis.noise_floor.low, diagnosis.noise_floor.high);
+  add("noise floor   {:.4g} {} ({:.4g} to {:.4g}), which a model without fault would leave\n",
+      diagnosis.noise_floor.rmse, unit, diagnosis.noise_floor.low, diagnosis.noise_floor.high);
   if (diagnosis.unexplained) add("unexplained   {}\n", diagnosis.unexplained->what);
   for (const std::string& note : diagnosis.notes) add("note          {}\n", note);
   return text;

@@ -46,8 +46,11 @@ void add_poles(const Evidence& evidence, std::vector<ModelNumber>& numbers) {
   const std::vector<double> modes = modes_of(evidence.found.model, &pairs);
   const std::vector<double> errors = errors_of_modes(evidence, modes.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::string name = "pole " + std::to_string(i + 1) + (pairs[i] ? " (pair)" : "");
-    numbers.push_back({name + ": natural frequency", modes[2 * i], errors[2 * i], "Hz", "fitted"});
+    const std::string name = "pole " + std::to_string(i + 1) + (pairs[i] ? " (pair)" : " (real)");
+    // It has no sign: an error as large as itself says nothing of it.
+    const double error = errors[2 * i] < modes[2 * i] ? errors[2 * i] : kUnknown;
+    numbers.push_back({name + ": natural frequency", modes[2 * i], error, "Hz", "fitted"});
+    if (!pairs[i]) continue;  // 1 by definition
     numbers.push_back(
         {name + ": damping ratio", modes[2 * i + 1], errors[2 * i + 1], "-", "fitted"});
   }

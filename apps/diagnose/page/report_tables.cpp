@@ -89,6 +89,15 @@ void add_trial(Table& table, const Step& step, std::size_t i) {
                         outcome_of(step, i)});
 }
 
+// Another start of the same fit.
+bool ends_as_chosen(const Step& step, std::size_t i) {
+  if (i == step.chosen || step.chosen >= step.tried.size()) return false;
+  const auto& own = step.tried[i].model.effects.back();
+  const auto& chosen = step.tried[step.chosen].model.effects.back();
+  return own.kind == chosen.kind && own.form == chosen.form && own.channels == chosen.channels &&
+         short_number(step.tried[i].rmse) == short_number(step.tried[step.chosen].rmse);
+}
+
 Table tried_table(const Diagnosis& found, const Step& step, const std::string& caption) {
   Table table;
   table.caption = caption;
@@ -98,7 +107,9 @@ Table tried_table(const Diagnosis& found, const Step& step, const std::string& c
   table.align = {Align::kLeft,  Align::kLeft,  Align::kLeft,  Align::kRight,
                  Align::kRight, Align::kRight, Align::kRight, Align::kLeft};
   const std::size_t shown_rows = std::min(step.tried.size(), kMostTried);
-  for (std::size_t i = 0; i < shown_rows; ++i) add_trial(table, step, i);
+  for (std::size_t i = 0; i < shown_rows; ++i) {
+    if (!ends_as_chosen(step, i)) add_trial(table, step, i);
+  }
   if (step.chosen >= shown_rows && step.chosen < step.tried.size()) {
     add_trial(table, step, step.chosen);
   }
@@ -125,8 +136,9 @@ Table error_table(const Diagnosis& found) {
   const std::string unit = shown_unit(found.output_unit);
   Table table;
   table.caption =
-      "RMS error of the free run on blocks of time that the fit has not seen, and its 95 % "
-      "interval over the blocks. VAF: variance accounted for. Last column: the error over the "
+      "RMS error of the free run (from the inputs alone) on blocks of time that the fit has not "
+      "seen (held out), and its 95 % interval over the blocks. VAF: variance accounted for, the "
+      "share of the output's variance that is explained. Last column: the error over the "
       "noise floor.";
   table.header = {"model",  "RMSE [" + unit + "]", "95 % interval [" + unit + "]", "VAF [%]",
                   "change", "over the floor"};
@@ -156,12 +168,13 @@ Table effect_table(const Diagnosis& found) {
       "Effects in the order in which they were added. Form: a term through the body passes the "
       "linear part; a term beside the body adds to the output. p: the probability of such an "
       "improvement by chance, from the signed ranks of the blocks. Ties: other kinds that explain "
-      "the record equally well; the simplest was taken. Carried: the part of the effect that the "
-      "saved model holds, so that predict uses it. control-model prints what the motor does "
+      "the record equally well; the simplest was taken. Saved: the part of the effect that holds "
+      "in "
+      "another recording, so that predict uses it. control-model prints what the motor does "
       "about it.";
   table.header = {
       "effect", "form", "evidence", "own size [" + shown_unit(found.output_unit) + "], 95 %",
-      "p",      "ties", "carried"};
+      "p",      "ties", "saved"};
   table.align = {Align::kLeft,  Align::kLeft, Align::kLeft, Align::kRight,
                  Align::kRight, Align::kLeft, Align::kLeft};
   for (const FoundEffect& effect : found.effects) {
@@ -177,7 +190,7 @@ Table parameter_table(const Evidence& evidence) {
   Table table;
   table.caption =
       "Numbers of the final model; baseline and effects are fitted together to the whole record. "
-      "Standard errors are those of the linearised fit under noise of the residual's colour "
+      "Standard errors are those of the linearised fit with noise of the residual's spectrum "
       "(DG-70, DG-71). A coefficient multiplies the effect's term. The model file holds the "
       "coefficients of a path through the body or of a loop.";
   table.header = {"part", "number", "value", "standard error", "unit", "origin"};

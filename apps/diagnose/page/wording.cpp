@@ -120,9 +120,9 @@ std::string percent(double share, int decimals) {
 }
 
 std::string carried_in_words(const FoundEffect& effect) {
-  if (effect.carried == 1.0) return "carried whole";
+  if (effect.carried == 1.0) return "saved whole: it holds in another recording";
   const std::string why = effect.why_not_carried.empty() ? "" : ": " + effect.why_not_carried;
-  return (effect.carried > 0.0 ? "carried to " + percent(effect.carried, 0) : "not carried") + why;
+  return (effect.carried > 0.0 ? "saved to " + percent(effect.carried, 0) : "not saved") + why;
 }
 
 bool none_carried(const Diagnosis& diagnosis) {

@@ -52,6 +52,17 @@ std::vector<std::string> names_of(const std::vector<ModelNumber>& numbers) {
 
 const Effect kFriction{"coulomb_friction", "sign, beside the body", {"omega"}, {}, {-1.0}};
 
+// A zero hides the pole: its error is larger than itself.  A real pole has no damping of its own.
+TEST(EffectNumbersTest, AHiddenPoleIsNotDetermined) {
+  Body body;
+  body.denominator = {1.0, -0.9};
+  body.numerators = {{-3.2, 2.88}};
+  const Made of(body, kFriction);
+  const auto sut = body_numbers(of.evidence);
+  EXPECT_EQ(sut.back().name, "pole 1 (real): natural frequency");
+  EXPECT_TRUE(std::isnan(sut.back().standard_error)) << sut.back().standard_error;
+}
+
 TEST(EffectNumbersTest, ThePhysicalNumberComesFirstAndThenWhatWasFitted) {
   const Made of(static_body(), kFriction);
   const auto sut = effect_numbers(of.evidence, 0);

@@ -131,12 +131,12 @@ TEST(WordingTest, AVerdictOfWhichNothingIsCarriedSaysSoInTheSameSentence) {
 TEST(WordingTest, AnEffectSaysHowMuchOfItIsCarried) {
   diagnosis::FoundEffect effect = found("tone");
   effect.why_not_carried = "the inputs do not determine it";
-  EXPECT_EQ(carried_in_words(effect), "not carried: the inputs do not determine it");
+  EXPECT_EQ(carried_in_words(effect), "not saved: the inputs do not determine it");
   effect.carried = 0.67;
   effect.why_not_carried = "so much is borne out";
-  EXPECT_EQ(carried_in_words(effect), "carried to 67 %: so much is borne out");
+  EXPECT_EQ(carried_in_words(effect), "saved to 67 %: so much is borne out");
   effect.carried = 1.0;
-  EXPECT_EQ(carried_in_words(effect), "carried whole");
+  EXPECT_EQ(carried_in_words(effect), "saved whole: it holds in another recording");
 }
 
 TEST(WordingTest, AVerdictMentionsTiesAndWhatIsLeft) {
