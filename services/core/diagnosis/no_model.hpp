@@ -11,11 +11,12 @@ namespace stillhand::diagnosis {
 
 /// Why a model that was fitted is none.
 struct NoModel {
-  std::string reason;  ///< "unrelated", "clocks", "unit", "sign", "swapped", "samples"
+  std::string reason;  ///< "unrelated", "clocks", "unit", "sign", "swapped", "samples", "copy"
   std::string why;     ///< one sentence without its stop
 };
 
-/// METHOD Eq. DG-81: input and output swapped, judged before an effect describes that.
+/// METHOD Eq. DG-81: an output that leads, or input and output swapped, judged before an effect
+/// describes that.
 std::optional<NoModel> exchanged_of(const Measurement& measurement, const Signals& signals,
                                     const Blocks& blocks, const Model& baseline, int order);
 
