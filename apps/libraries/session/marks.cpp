@@ -59,7 +59,7 @@ std::string line_of(const Mark& mark) {
 }
 
 Mark mark_of(const stillhand_msgs::Event& event) {
-  return {name_of(event.kind()),
+  return {event.code() == stillhand_msgs::CODE_STALL ? "stood still" : name_of(event.kind()),
           event.source().c_str(),
           event.topic().c_str(),
           event.peer().c_str(),

@@ -259,17 +259,18 @@ void add_gaps(const Stream& stream, std::int64_t least_ns, std::vector<Gap>& gap
 }
 
 // The process itself says it, within a second, with the length from one tick to the next.
-std::string why_in(const SessionRecording& session, const Miss& miss) {
+std::string why_in(const SessionRecording& session,
+                   const std::vector<const stillhand_msgs::Event*>& stalls, const Miss& miss) {
   constexpr double kSame_s = 0.003;
   const ClockLine clock(session.clock_offsets, miss.process);
   const double until_s = static_cast<double>(miss.from_ns) / kNs_per_s + miss.late_s;
-  for (const stillhand_msgs::Event& event : session.events) {
-    if (event.code() != stillhand_msgs::CODE_STALL || event.source() != miss.process) continue;
+  for (const stillhand_msgs::Event* event : stalls) {
+    if (event->source() != miss.process) continue;
     const double said_s =
-        static_cast<double>(clock.on_experiments_clock(event.stamp_ns())) / kNs_per_s;
+        static_cast<double>(clock.on_experiments_clock(event->stamp_ns())) / kNs_per_s;
     const bool after = said_s > until_s - kSame_s && said_s < until_s + 1.0;
-    if (after && std::abs(1e-6 * event.by_us() - miss.late_s) < kSame_s) {
-      return event.text().c_str();
+    if (after && std::abs(1e-6 * event->by_us() - miss.late_s) < kSame_s) {
+      return event->text().c_str();
     }
   }
   return {};
@@ -284,9 +285,13 @@ std::vector<Miss> misses_in(const SessionRecording& session, double least_s) {
   std::vector<Gap> gaps;
   for (const Stream& stream : streams) add_gaps(stream, least_ns, gaps, misses);
   const Forces forces = forces_of(session);
+  std::vector<const stillhand_msgs::Event*> stalls;
+  for (const stillhand_msgs::Event& event : session.events) {
+    if (event.code() == stillhand_msgs::CODE_STALL) stalls.push_back(&event);
+  }
   for (Miss& miss : misses) {
     judge(session, forces, miss);
-    miss.why = why_in(session, miss);
+    miss.why = why_in(session, stalls, miss);
   }
   std::ranges::stable_sort(misses, {}, &Miss::from_ns);
   return misses;

@@ -48,7 +48,6 @@ std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const Thread
                                      share * outside_ns);
   };
   const auto most_of_it = [&](std::int64_t spent_ns) { return spent_ns > silent_ns / 2; };
-  if (after.continued > before.continued) return "stopped by a signal";
   if (const std::int64_t waited_ns = beyond_usual_ns(&ThreadAccount::waited_ns);
       most_of_it(waited_ns)) {
     return "waited " + milliseconds(waited_ns) + " for a processor";
@@ -56,6 +55,7 @@ std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const Thread
   if (const std::int64_t ran_ns = beyond_usual_ns(&ThreadAccount::ran_ns); most_of_it(ran_ns)) {
     return "worked for " + milliseconds(ran_ns);
   }
+  if (after.continued > before.continued) return "stopped by a signal";
   if (const std::int64_t pages = after.disk_pages - before.disk_pages; pages > 0) {
     return "waited for " + std::to_string(pages) + " pages of memory from a disk";
   }

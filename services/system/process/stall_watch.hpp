@@ -58,7 +58,7 @@ class StallWatch {
     std::int64_t from_ns, until_ns;
   };
   boost::lockfree::spsc_queue<Silence, boost::lockfree::capacity<16>> silences_;
-  std::array<ThreadAccount, 4> accounts_{};  // newest first
+  std::array<ThreadAccount, 64> accounts_{};  // newest first, 6 s
   std::int64_t continued_ = 0;
 };
 
