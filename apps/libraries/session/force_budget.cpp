@@ -139,6 +139,9 @@ std::optional<ForceBudget> force_budget(const BudgetSignals& signals) {
                            &asked.unlimited_n, &asked.noiseless_n}) {
     if (each->size() != size || !known(*each)) return std::nullopt;
   }
+  for (const std::vector<double>& channel : signals.motion) {
+    if (channel.size() != size || !known(channel)) return std::nullopt;
+  }
   const Blocks blocks = sums_of(signals);
   return ForceBudget{
       .left = estimate(blocks, [](const Sums& sums) { return sums.left; }),

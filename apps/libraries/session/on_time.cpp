@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include "apps/libraries/session/core/trial_forces.hpp"
@@ -48,7 +47,15 @@ AnswerConfigs without_limits(AnswerConfigs configs) {
   return configs;
 }
 
-/// The motor's force in every tick of the trial, and in the time that the model needs before it.
+/// First tick of what a trial needs: the model settles before it.
+Tick first_tick(const Trial& trial, const cancellation::ControlModel& model,
+                const AnswerConfigs& configs) {
+  cancellation::Countermeasure canceller(configs.cancellation, {.force = true});
+  if (canceller.load_model(model) != cancellation::Refusal::kNone) return trial.start_tick;
+  return trial.start_tick - trial.ramp_ticks - canceller.unsettled_ticks();
+}
+
+/// The motor's force in every tick of the samples.
 std::vector<Answer> answers_to(const std::vector<sensing::DeviceSample>& samples,
                                const PlannedTrial& planned, const cancellation::ControlModel& model,
                                const AnswerConfigs& configs) {
@@ -57,11 +64,9 @@ std::vector<Answer> answers_to(const std::vector<sensing::DeviceSample>& samples
   cancellation::Countermeasure canceller(configs.cancellation, {.force = true});
   rig::Motor motor(configs.motor, configs.lever_m);
   if (canceller.load_model(model) != cancellation::Refusal::kNone) return {};
-  const Tick first = trial.start_tick - trial.ramp_ticks - canceller.unsettled_ticks();
   std::vector<Answer> answers;
   double command_n = 0.0;
   for (const sensing::DeviceSample& sample : samples) {
-    if (sample.tick < first || sample.tick >= trial.start_tick + trial.duration_ticks) continue;
     const bool covered = trial.covers(sample.tick);
     const sensing::Sensed sensed = conditioner.step(sample);
     const double before_n = std::exchange(
@@ -83,15 +88,12 @@ std::vector<double> over_trial(const std::vector<Answer>& answers, const Trial& 
 std::vector<sensing::DeviceSample> noiseless(std::vector<sensing::DeviceSample> samples,
                                              const SessionRecording& session,
                                              const sensing::Config& sensing) {
-  std::unordered_map<Tick, double> acceleration_m_s2;
-  for (const auto& truth : session.rig_truths) {
-    acceleration_m_s2[truth.tick()] = truth.platform_acceleration_m_s2();
-  }
+  auto truth = session.rig_truths.begin();
   for (sensing::DeviceSample& sample : samples) {
-    const auto truth = acceleration_m_s2.find(sample.tick);
-    if (truth == acceleration_m_s2.end()) continue;
-    const double along_m_s2 =
-        truth->second * std::cos(sample.roll_rad) - rig::kGravity_m_s2 * std::sin(sample.roll_rad);
+    while (truth != session.rig_truths.end() && truth->tick() < sample.tick) ++truth;
+    if (truth == session.rig_truths.end() || truth->tick() != sample.tick) continue;
+    const double along_m_s2 = truth->platform_acceleration_m_s2() * std::cos(sample.roll_rad) -
+                              rig::kGravity_m_s2 * std::sin(sample.roll_rad);
     sample.accel_y_v = along_m_s2 * sensing.accel_sensitivity_v_m_s2 + sensing.accel_y_offset_v;
   }
   return samples;
@@ -121,19 +123,25 @@ BudgetSignals on_time_signals(const SessionRecording& session, const PlannedTria
                               std::int32_t number, const AnswerConfigs& configs) {
   const Trial& trial = planned.trial;
   const auto model = model_of(session, number, configs.cancellation.sampling);
-  if (!model) return {};
-  std::vector<sensing::DeviceSample> samples;
-  samples.reserve(session.raw_samples.size());
-  for (const auto& raw : session.raw_samples) samples.push_back(sensing::from_idl(raw));
-  const AnswerConfigs free = without_limits(configs);
-  const auto asked = [&](const std::vector<sensing::DeviceSample>& of, const AnswerConfigs& with) {
-    return over_trial(answers_to(of, planned, *model, with), trial);
-  };
   std::int64_t missing = 0;
   const auto truth = [&](auto value) {
     return measured(session.rig_truths, trial, value, missing);
   };
-  return {truth([](const auto& t) { return t.feedthrough_force_n(); }),
+  std::vector<double> feedthrough_n = truth([](const auto& t) { return t.feedthrough_force_n(); });
+  const bool known = std::ranges::all_of(feedthrough_n, [](double n) { return std::isfinite(n); });
+  if (!model || !known) return {};
+  const Tick first = first_tick(trial, *model, configs);
+  std::vector<sensing::DeviceSample> samples;
+  for (const auto& raw : session.raw_samples) {
+    if (raw.tick() >= first && raw.tick() < trial.start_tick + trial.duration_ticks) {
+      samples.push_back(sensing::from_idl(raw));
+    }
+  }
+  const AnswerConfigs free = without_limits(configs);
+  const auto asked = [&](const std::vector<sensing::DeviceSample>& of, const AnswerConfigs& with) {
+    return over_trial(answers_to(of, planned, *model, with), trial);
+  };
+  return {std::move(feedthrough_n),
           truth([](const auto& t) { return t.motor_force_n(); }),
           {asked(samples, configs), asked(samples, free),
            asked(noiseless(samples, session, configs.sensing), free)},
