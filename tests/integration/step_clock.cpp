@@ -32,6 +32,7 @@ class SteppedCopy {
 
   bool write() {
     for (Metadata each : reader_.metadata()) {
+      each.texts.erase("log_clock");  // earlier recorders did not write it
       for (auto& [key, text] : each.texts) {
         if (key == "clock_offset_ns at end")
           text = std::to_string(stepped(INT64_MAX) + std::stoll(text));

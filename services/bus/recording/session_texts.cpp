@@ -19,6 +19,7 @@ TextMap session_texts(std::uint32_t domain, const std::string& recorded_by) {
           {"stillhand", kVersion},
           {"git", STILLHAND_GIT},
           {"recorded_by", recorded_by},
+          {"log_clock", "monotonic"},
           {"clock_offset_ns at start", clock_offset()}};
 }
 

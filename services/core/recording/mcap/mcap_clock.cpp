@@ -45,7 +45,9 @@ bool McapReader::clock_may_have_stepped() const {
 }
 
 void McapReader::straighten_clock() {
-  if (profile_ != kProfile || find_metadata("stillhand.session") == nullptr) return;
+  const Metadata* session = find_metadata("stillhand.session");
+  // Recorders of today log by a clock that nobody sets, and say so.
+  if (profile_ != kProfile || session == nullptr || session->texts.contains("log_clock")) return;
   if (indexed_ && !clock_may_have_stepped()) return;
   const MessageFilter everything;
   const std::function<bool(const MessageView&)> nothing = [](const MessageView&) { return true; };
