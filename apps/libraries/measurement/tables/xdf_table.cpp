@@ -27,10 +27,12 @@ enum Tag : std::uint16_t { kStreamHeader = 2, kSamples = 3, kClockOffset = 4 };
 constexpr std::array<std::string_view, 6> kNumbers{"double64", "float32", "int8",
                                                    "int16",    "int32",   "int64"};
 constexpr double kMostChannels = 1024;
+constexpr std::size_t kMostStreams = 256;
+constexpr std::size_t kMostHeader_bytes = 1 << 20;
 constexpr std::size_t kMostOffsets = 400;  // of more, so many, evenly spread
 // Of the line from a tenth of the clock offsets at least: 2.9 degrees at 4 Hz between two streams.
 constexpr double kWorstOffset_s = 0.002;
-constexpr double kLatest_s = 1e9;
+constexpr double kLatest_s = 1e10;
 constexpr double kLeastStep_s = 1e-3;  // LabRecorder asks every 5 s
 
 struct Stream {
@@ -88,14 +90,15 @@ Stream header_of(std::uint32_t id, std::string_view xml) {
   stream.format = text_of(xml, "channel_format");
   stream.rate_hz = number_of(text_of(xml, "nominal_srate"));
   const double channels = std::min(number_of(text_of(xml, "channel_count")), kMostChannels);
-  std::string list = text_of(xml, "channels");
+  const std::string channels_xml = text_of(xml, "channels");
+  std::string_view list = channels_xml;
   for (std::size_t i = 0; i < static_cast<std::size_t>(channels); ++i) {
     const std::string channel = text_of(list, "channel");
     const std::string label = text_of(channel, "label");
     stream.labels.push_back(label.empty() ? std::to_string(i + 1) : label);
     stream.units.push_back(text_of(channel, "unit"));
-    list.erase(0, list.find("</channel>"));
-    list.erase(0, 1);
+    list.remove_prefix(std::min(list.size(), list.find("</channel>")));
+    list.remove_prefix(std::min<std::size_t>(list.size(), 1));
   }
   if (std::ranges::count(kNumbers, stream.format) > 0) stream.values.resize(stream.labels.size());
   return stream;
@@ -132,6 +135,9 @@ File parse(std::span<const std::byte> bytes, const std::string& path, std::size_
     const auto id = in.take<std::uint32_t>();
     auto stream = std::ranges::find(file.streams, id, &Stream::id);
     bool good = (stream == file.streams.end()) == (tag == kStreamHeader);
+    if (tag == kStreamHeader) {
+      good = good && in.left() <= kMostHeader_bytes && file.streams.size() < kMostStreams;
+    }
     if (good && tag == kStreamHeader) {
       const auto xml = in.take_bytes(in.left());
       file.streams.push_back(
@@ -146,9 +152,10 @@ File parse(std::span<const std::byte> bytes, const std::string& path, std::size_
       good = take_samples(in, *stream, most_values);
     }
     if (!good || !in.ok()) {
-      throw ConfigError(fmt::format("{}, byte {}", path, file.read_bytes),
-                        "a chunk that contradicts itself or its stream, or too many values",
-                        fmt::format("XDF 1.0, and at most {} values", most_values));
+      throw ConfigError(
+          fmt::format("{}, byte {}", path, file.read_bytes),
+          "a chunk that contradicts itself or its stream, or too many values",
+          fmt::format("XDF 1.0, at most {} values and {} streams", most_values, kMostStreams));
     }
   }
   return file;
@@ -202,7 +209,8 @@ class XdfTable : public TableFile {
       const auto stops = [](double a_s, double b_s) { return !(b_s > a_s && b_s < kLatest_s); };
       if (std::ranges::adjacent_find(time_s, stops) != time_s.end()) {
         throw ConfigError(head().path, "time stamps of '" + stream.name + "' that do not go on",
-                          "stamps that increase");
+                          "stamps that increase; pyxdf.load_xdf() evens those of chunks that came "
+                          "unevenly: save its arrays as CSV");
       }
       if (times.size() > 1 && stream.offset_s.empty()) {
         throw ConfigError(head().path, "no clock offsets of '" + stream.name + "'",
