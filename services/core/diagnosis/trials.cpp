@@ -189,8 +189,12 @@ void fit_on_part(Screened& screened, std::size_t count, const Part& part,
 Signals screened_part(const Signals& signals) {
   constexpr std::size_t kPieces = 10;
   if (signals.size() <= kMostScreened) return signals;
-  return signals.cut_to(
-      spread_pieces(signals.stretches(), kPieces, kMostScreened, signals.rate_hz()));
+  const std::vector<Stretch> pieces =
+      spread_pieces(signals.stretches(), kPieces, kMostScreened, signals.rate_hz());
+  // Pieces of many short stretches may hold too little.
+  std::size_t rows = 0;
+  for (const Stretch& piece : pieces) rows += piece.end - piece.first;
+  return rows < kMostScreened / 2 ? signals : signals.cut_to(pieces);
 }
 
 Screened screened_trials(const Model& current, double current_rmse, const Signals& signals,
