@@ -67,8 +67,9 @@ report::Figure tracking_figure(const LoopRecord& record) {
       "The paper's three metrics, the force that is left, the hand's acceleration and the motor's "
       "force: means, and 95 % intervals over the repeats. A: platform still. B: platform moving. "
       "C: "
-      "cancelled with the paper's model. C': the same model, its gain and phase followed. C+: the "
-      "augmented model, followed as well.";
+      "cancelled with the paper's model. C': the same model; its gain and phase adapt. C+: the "
+      "model "
+      "with the effect; its gain and phase adapt, too.";
   figure.columns = 3;
   figure.height_px = 560;
   constexpr std::size_t kShown = 6;

@@ -291,8 +291,8 @@ std::string kept_text(const LoopRecord& record) {
   const std::size_t repeats = record.conditions.at("A").size();
   return std::string("C+ is ") + (decision.kept() ? "kept" : "not kept") + ": over " +
          std::to_string(repeats) + (repeats == 1 ? " repeat" : " repeats") +
-         " that no fit has seen, its " + decision.measure->title + " differs from that of C by " +
-         with_interval(decision.over_c, decimals) + " and from that of C' by " +
+         " that no fit has seen, its " + decision.measure->title + " changes by " +
+         with_interval(decision.over_c, decimals) + " from C and, from C', by " +
          with_interval(decision.over_c_prime, decimals) +
          (decision.certain() ? ", and both intervals exclude 0"
                              : ", as far as these repeats show") +

@@ -120,7 +120,11 @@ report::Page session_page(const LabOptions& options, const session::SessionResul
   if (!result.rig_parts.empty()) page.paragraph("The " + result.rig_parts + ".");
   page.section("Tracking metrics");
   page.table(metrics_table(result));
-  page.paragraph("Another session gives other numbers.");
+  std::string meanings;
+  for (const session::Number& shown : session::samples()) {
+    meanings += fmt::format("{}: {}. ", shown.title, shown.meaning);
+  }
+  page.paragraph(meanings + "Another session gives other numbers.");
   for (const std::string& line : disturbance_lines(result)) page.paragraph("* " + line + ".");
   add_budgets(result, page);
   if (!mitigated_trials(result).empty()) {

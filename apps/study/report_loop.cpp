@@ -56,8 +56,9 @@ report::Table numbers_table(const Analysis& analysis) {
       "Every number, mean ± SD over the subjects; restored: (B − C)/(B − A) of the means, 100 % is "
       "the value on the stationary platform. The crossover f_c is by the paper's line through "
       "eleven "
-      "points, that by the reference has the remnant's power subtracted (identification, Eq. "
-      "ID-15).";
+      "points; that by the reference is of the cursor over the target, without the power of the "
+      "remnant, "
+      "which is what the hand does beyond following the target (identification, Eq. ID-15).";
   table.header = {"number"};
   for (const auto& entry : analysis.conditions) table.header.push_back(title_of(entry.first));
   table.header.insert(table.header.end(), {"restored by C [95 %]", "paper: A, B, C, restored"});

@@ -129,7 +129,7 @@ const char* people_of(const StudyRecord& record) {
   const Subjects who = subjects_of(record);
   return !record.recorded              ? "Simulated subjects track"
          : who == Subjects::kPeople    ? "Recorded participants track"
-         : who == Subjects::kSimulated ? "Recorded simulated subjects track"
+         : who == Subjects::kSimulated ? "Simulated subjects, recorded live, track"
                                        : "Recorded participants and simulated subjects track";
 }
 

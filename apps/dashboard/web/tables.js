@@ -199,6 +199,7 @@ export class Tables {
       item.dataset.level = alarm.level;
       item.append(create("b", alarm.level), create("span", what(alarm)));
       if (alarm.count > 1) item.append(create("span", `${alarm.count} times`, "faint"));
+      if (!alarm.active) item.append(create("span", "over now", "faint"));
       if (alarm.acknowledged && alarm.watch !== "qos") item.append(create("span", "acknowledged", "faint"));
       item.append(create("time", clock(alarm.since_ms)));
       return item;

@@ -93,8 +93,8 @@ report::Figure figure_detections(const Evidence& evidence) {
       .caption =
           "The questions that explain most of the residual. Above: share of its power on held-out "
           "blocks (negative ones drawn at 0). Below: probability of such a gain by chance, "
-          "corrected for all questions after Holm (smaller ones drawn at 1e-30). A large mark is a "
-          "yes: its share is above the threshold, and its p below. y: the body's output.",
+          "corrected for all questions after Holm (smaller ones drawn at 1e-30). A large mark is "
+          "significant: its share is above the threshold, and its p below. y: the body's output.",
       .panels = {share, chance},
       .width_px = 980,
       .height_px = 560};

@@ -165,8 +165,9 @@ Table error_table(const Diagnosis& found) {
 Table effect_table(const Diagnosis& found) {
   Table table;
   table.caption =
-      "Effects in the order in which they were added. Form: a term through the body passes the "
-      "linear part; a term beside the body adds to the output. p: the probability of such an "
+      "Effects in the order in which they were added. Form: through the body, the effect "
+      "acts before the linear part; beside the body, it is added to the output. p: the probability "
+      "of such an "
       "improvement by chance, from the signed ranks of the blocks. Ties: other kinds that explain "
       "the record equally well; the simplest was taken. Saved: the part of the effect that holds "
       "in "
@@ -241,7 +242,7 @@ Table limit_table(const Diagnosis& found) {
   table.caption =
       "What would not have been seen. An effect of this size is found in half of all recordings; a "
       "smaller one may be there. Size: the RMS that the effect adds to the output all the time, "
-      "and that the linear part cannot imitate.";
+      "and that the linear part cannot reproduce.";
   table.header = {"size found in half of all recordings", "kinds"};
   table.align = {Align::kLeft, Align::kLeft};
   std::map<double, std::vector<std::string>> kinds;
