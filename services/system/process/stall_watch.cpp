@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/system/process/stall_watch.hpp"
 
+#include <fcntl.h>
 #include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
-#include <limits>
-#include <sstream>
 #include <utility>
 
 #include "services/system/process/clock.hpp"
@@ -67,6 +66,10 @@ StallWatch::StallWatch() {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
+StallWatch::~StallWatch() {
+  if (schedstat_ >= 0) close(schedstat_);
+}
+
 void StallWatch::beat() noexcept {
   const std::int64_t now_ns = monotonic_ns();
   const std::int64_t from_ns = std::exchange(last_ns_, now_ns);
@@ -81,28 +84,27 @@ ThreadAccount StallWatch::account() {
   const sigset_t set = continue_signal();
   const timespec at_once{};
   while (sigtimedwait(&set, nullptr, &at_once) == SIGCONT) ++continued_;
-  const std::string folder = "/proc/self/task/" + std::to_string(thread_.load()) + "/";
   ThreadAccount account;
   account.continued = continued_;
-  std::ifstream(folder + "schedstat") >> account.ran_ns >> account.waited_ns;
-  // "pid (name) state ppid pgrp session tty tpgid flags minflt cminflt majflt ...": a name may hold
-  // spaces and brackets.
-  std::ifstream stat(folder + "stat");
-  stat.ignore(std::numeric_limits<std::streamsize>::max(), '(');
-  std::string rest;
-  std::getline(stat, rest);
-  constexpr int kMajorFault = 10;  // words behind the name
-  std::istringstream words(rest.substr(std::min(rest.size(), rest.rfind(')') + 1)));
-  std::string word;
-  for (int n = 0; n < kMajorFault && words >> word; ++n) {
+  std::array<char, 96> text{};  // "ran waited turns"
+  if (pread(schedstat_, text.data(), text.size() - 1, 0) > 0) {
+    char* rest = nullptr;
+    account.ran_ns = std::strtoll(text.data(), &rest, 10);
+    account.waited_ns = std::strtoll(rest, nullptr, 10);
   }
-  if (words) account.disk_pages = std::strtoll(word.c_str(), nullptr, 10);
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) == 0) account.disk_pages = usage.ru_majflt;
   account.at_ns = monotonic_ns();
   return account;
 }
 
 std::optional<Stall> StallWatch::step() {
-  if (thread_.load(std::memory_order_relaxed) == 0) return std::nullopt;
+  const pid_t thread = thread_.load(std::memory_order_relaxed);
+  if (thread == 0) return std::nullopt;
+  if (schedstat_ < 0) {
+    const std::string file = "/proc/self/task/" + std::to_string(thread) + "/schedstat";
+    schedstat_ = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  }
   // First the silences, then the account: they ended before it.
   Silence longest{};
   silences_.consume_all([&](const Silence& each) {

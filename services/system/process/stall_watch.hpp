@@ -12,12 +12,12 @@
 
 namespace stillhand::runtime {
 
-/// What the kernel counted for a thread, proc_pid_schedstat(5) and proc_pid_stat(5).
+/// What the kernel counted for a thread, proc_pid_schedstat(5), and for its process, getrusage(2).
 struct ThreadAccount {
   std::int64_t at_ns = 0;       ///< when it was read
   std::int64_t ran_ns = 0;      ///< on a processor
   std::int64_t waited_ns = 0;   ///< runnable, without a processor
-  std::int64_t disk_pages = 0;  ///< page faults that a disk had to answer
+  std::int64_t disk_pages = 0;  ///< of the process: page faults that a disk had to answer
   std::int64_t continued = 0;   ///< SIGCONT that came
 };
 
@@ -42,6 +42,9 @@ class StallWatch {
   /// Blocks SIGCONT for this thread and those it starts, so that step() can count it; a thread that
   /// does not block it takes it away.
   StallWatch();
+  ~StallWatch();
+  StallWatch(const StallWatch&) = delete;
+  StallWatch& operator=(const StallWatch&) = delete;
 
   /// From the thread that is watched, once a turn.  Never locks or allocates.
   void beat() noexcept;
@@ -60,6 +63,7 @@ class StallWatch {
   boost::lockfree::spsc_queue<Silence, boost::lockfree::capacity<16>> silences_;
   std::array<ThreadAccount, 64> accounts_{};  // newest first, 6 s
   std::int64_t continued_ = 0;
+  int schedstat_ = -1;  // kept open: two calls a look
 };
 
 }  // namespace stillhand::runtime
