@@ -261,15 +261,16 @@ void add_gaps(const Stream& stream, std::int64_t least_ns, std::vector<Gap>& gap
 // The process itself says it, within a second, with the length from one tick to the next.
 std::string why_in(const SessionRecording& session,
                    const std::vector<const stillhand_msgs::Event*>& stalls, const Miss& miss) {
-  constexpr double kSame_s = 0.003;
+  // A sample is stamped after its beat, on a busy machine by some of it.
+  const double same_s = std::max(0.003, 0.2 * miss.late_s);
   const ClockLine clock(session.clock_offsets, miss.process);
   const double until_s = static_cast<double>(miss.from_ns) / kNs_per_s + miss.late_s;
   for (const stillhand_msgs::Event* event : stalls) {
     if (event->source() != miss.process) continue;
     const double said_s =
         static_cast<double>(clock.on_experiments_clock(event->stamp_ns())) / kNs_per_s;
-    const bool after = said_s > until_s - kSame_s && said_s < until_s + 1.0;
-    if (after && std::abs(1e-6 * event->by_us() - miss.late_s) < kSame_s) {
+    const bool after = said_s > until_s - same_s && said_s < until_s + 1.0;
+    if (after && std::abs(1e-6 * event->by_us() - miss.late_s) < same_s) {
       return event->text().c_str();
     }
   }
