@@ -61,12 +61,9 @@ void add_budgets(const session::SessionResult& result, report::Page& page) {
             " leaves of the feedthrough force, split into its causes. They add up to the whole; a "
             "cause that cancels another one is negative.",
         {"cause", "[N]", "95 % interval [N]"}};
-    // Hundredths below half of one are no cause, of either sign.
-    const auto rounded = [](double force_n) { return std::round(100.0 * force_n) / 100.0 + 0.0; };
     const auto add = [&](const std::string& name, const session::ForceEstimate& each) {
       table.rows.push_back(
-          {name, fmt::format("{:.2f}", rounded(each.force_n)),
-           fmt::format("{:.2f} to {:.2f}", rounded(each.low_n), rounded(each.high_n))});
+          {name, number(each.force_n, 2), number(each.low_n, 2) + " to " + number(each.high_n, 2)});
     };
     for (const session::ForceCause& cause : session::kForceCauses) {
       add(fmt::format("{}: {}", cause.key, cause.meaning), (*trial.budget).*cause.of);

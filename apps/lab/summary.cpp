@@ -39,12 +39,14 @@ void print_disturbances(const session::SessionResult& result) {
 void print_budgets(const session::SessionResult& result) {
   for (const session::TrialResult& trial : result.trials) {
     if (!trial.budget) continue;
-    std::printf("%s leaves %.2f N of the feedthrough:", session::name_of(trial.label),
-                trial.budget->left.force_n);
+    std::string parts;
     for (const session::ForceCause& cause : session::kForceCauses) {
-      const bool last = &cause == &session::kForceCauses.back();
-      std::printf(" %s %.2f%s", cause.key, ((*trial.budget).*cause.of).force_n, last ? "\n" : ",");
+      const double force_n = ((*trial.budget).*cause.of).force_n;
+      parts +=
+          fmt::format("{}{} {}", parts.empty() ? "" : ", ", cause.key, report::number(force_n, 2));
     }
+    fmt::print("{} leaves {} N of the feedthrough: {}\n", session::name_of(trial.label),
+               report::number(trial.budget->left.force_n, 2), parts);
   }
 }
 

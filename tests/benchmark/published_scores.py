@@ -10,7 +10,8 @@ impulse response (FIR, ridge), and a polynomial difference model (NARX) that pre
 
 The files are not part of the project: `<set>_train.csv` and `<set>_test.csv` in --folder or in its benchmarks/.
 
-Exit status: 0; 1 where the effects make the test error more than 5 % larger, from that start or without one; 77 where no file is to be had.
+Exit status: 0; 1 where the effects make the test error more than 5 % larger, from that start or without one; 77 where
+no file is to be had.
 
     STILLHAND_BUILD=build python3 tests/benchmark/published_scores.py [--only SET] [--pictures DIR]
 """

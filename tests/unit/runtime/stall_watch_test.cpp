@@ -45,7 +45,7 @@ TEST(WhySilentTest, DoesNotGuess) {
   EXPECT_EQ(why_silent(210 * kMs, 280 * kMs, {}, at(200, 20, 2), at(250, 23, 90)), "");
 }
 
-/// A thread that beats each millisecond until it is told otherwise, and the watch on it.
+/// A thread that beats each millisecond until this ends, and the watch on it.
 class Watched {
  public:
   Watched() : thread_([this] { work(); }) {
@@ -95,16 +95,17 @@ void work_for_60_ms() {
   } while (now.tv_sec * kNsPerSecond + now.tv_nsec < until_ns);
 }
 
-// On a machine with nobody else's work, what it did is what the kernel says; next to others the
-// thread may also wait for a processor for longer than it works.
+// Next to others' work the thread may wait for a processor for longer than it works.
 TEST(StallWatchTest, NamesWorkThatLastsTooLong) {
   Watched sut;
   sut.once(&work_for_60_ms);
   const auto stall = sut.stall(0.06);
   ASSERT_TRUE(stall);
-  EXPECT_TRUE(stall->why.starts_with("worked for ") || stall->why.starts_with("waited ") ||
-              stall->why.empty())
-      << stall->why;
+  if (stall->late_s < 0.09) {
+    EXPECT_TRUE(stall->why.starts_with("worked for ")) << stall->why;
+  } else {
+    EXPECT_NE(stall->why, "stopped by a signal");
+  }
 }
 
 TEST(StallWatchTest, ASleepHasNoReasonOfItsOwn) {
