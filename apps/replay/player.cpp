@@ -34,7 +34,6 @@ Player::Player(MessageSource& source, std::uint64_t first_ns, std::uint64_t last
 void Player::begin(bool paused) {
   if (paused) clock_.pause(0);  // before it runs: the position is the first instant exactly
   jump(first_ns_);
-  began_ns_ = monotonic_ns();
 }
 
 // The clock starts again when the first stretch has been read: reading is not lateness.
@@ -80,7 +79,7 @@ std::optional<std::int64_t> Player::step() {
     if (when_ns > monotonic_ns()) runtime::sleep_until_ns(when_ns);
     const std::int64_t now_ns = monotonic_ns();
     release_next();
-    errors_.add(now_ns - due_ns, now_ns - began_ns_);
+    errors_.add(now_ns - due_ns);
     const bool late = now_ns - due_ns > kHeldUp_ns;
     if (late && !late_) ++held_up_;
     late_ = late;

@@ -71,7 +71,6 @@ class Player {
   std::uint64_t loop_from_ns_;
   std::optional<std::uint64_t> loop_to_ns_;
   std::uint64_t end_ns_;  ///< of the stretch that plays: of the loop, or of the recording
-  std::int64_t began_ns_ = 0;
   std::uint64_t released_ = 0;
   struct Released {
     std::int64_t released_ns, due_ns;

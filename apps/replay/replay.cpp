@@ -31,6 +31,7 @@ constexpr std::int64_t kArrow_ns = 5 * runtime::kNsPerSecond;
 constexpr std::int64_t kPrintInterval_ns = runtime::kNsPerSecond / 4;
 constexpr std::int64_t kStatusInterval_ns = runtime::kNsPerSecond / 10;
 constexpr std::int64_t kMatchPoll_ns = 10'000'000;
+constexpr std::int64_t kTooLate_us = 100'000;  // for half of the messages
 // Peers announce themselves every 0.1 s at their start and every 0.5 s later (qos/profiles.xml).
 constexpr std::int64_t kSettled_ns = 6 * runtime::kNsPerSecond / 10;
 constexpr std::int64_t kAcknowledge_ns = 2 * runtime::kNsPerSecond;
@@ -208,14 +209,18 @@ void print_end(const Player& player, std::size_t channels, std::uint64_t unheard
   const recording::ReleaseErrors& errors = player.errors();
   fmt::print("{} messages of {} channels played\n", player.released(), channels);
   if (unheard > 0) fmt::print("{} of them while their topic had no reader\n", unheard);
-  fmt::print("release error: p50 {} us, p99 {} us, max {} us; drift {:+.3f} us/s\n",
-             errors.percentile_us(0.50), errors.percentile_us(0.99), errors.max_us(),
-             errors.drift_us_s());
-  if (player.held_up() > 0) {
+  const std::int64_t median_us = errors.percentile_us(0.50);
+  if (median_us > kTooLate_us) {
     fmt::print(
-        "the machine delayed the replay {} times by more than 10 ms; it caught up at twice the "
-        "rate\n",
-        player.held_up());
+        "this machine cannot play it at rate {}: half of the messages came later than {:g} s\n",
+        player.rate().text(), 1e-6 * kTooLate_us);
+  } else {
+    fmt::print("the messages came late by {} us in the median, {} us in 99 %, {} us at most\n",
+               median_us, errors.percentile_us(0.99), errors.max_us());
+  }
+  if (player.held_up() > 0) {
+    fmt::print("late by more than 10 ms: {} times; then it plays at twice its rate to catch up\n",
+               player.held_up());
   }
   std::fflush(stdout);
 }

@@ -126,6 +126,8 @@ TEST(TextLayoutTest, DegreesAreStatedForAllAngles) {
 TEST(TextLayoutTest, SaysWhatIsWrong) {
   EXPECT_THAT(error_of(""), HasSubstr("ride.csv: got an empty file"));
   EXPECT_THAT(error_of("Dear reader,\n\nthis is a letter.\n"), HasSubstr("no rows of numbers"));
+  EXPECT_THAT(error_of("panel,x_axis,y_axis,series,x\n1,time [s],force [N],measured,0\n"),
+              HasSubstr("got the data of a figure, want the recording"));
   // A comma within a title that has no quotes: whose cells these are is not known.
   EXPECT_THAT(error_of("t,force, lateral,acc\n0.0,1.5,2\n0.1,1.5,2\n"),
               HasSubstr("got 4 titles above rows of 3 cells"));

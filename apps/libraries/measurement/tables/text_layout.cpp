@@ -275,6 +275,16 @@ void take_labview(const std::vector<TextLine>& lines, std::size_t first_row, Tex
   if (no_times && step_s > 0.0) out.rate_hz = 1.0 / step_s;
 }
 
+/// Of a text in which no table was found.
+[[noreturn]] void refuse(const std::vector<TextLine>& lines, const std::string& path) {
+  if (!lines.empty() && lines.front().text.starts_with("panel,x_axis,")) {
+    throw ConfigError(path, "the data of a figure",
+                      "the recording that the figure shows: its page names it");
+  }
+  throw ConfigError(path, lines.empty() ? "an empty file" : "no rows of numbers",
+                    "a table: a line of titles, then rows of numbers");
+}
+
 }  // namespace
 
 std::string separator_name(char separator) {
@@ -308,10 +318,7 @@ TextLayout find_layout(std::string_view text, const TextForm& asked, const std::
       best = std::move(reading);
     }
   }
-  if (best.score <= 0 || best.usual.cells > kMostColumns) {
-    throw ConfigError(path, lines.empty() ? "an empty file" : "no rows of numbers",
-                      "a table: a line of titles, then rows of numbers");
-  }
+  if (best.score <= 0 || best.usual.cells > kMostColumns) refuse(lines, path);
   const TextLine& first = plain[first_row(best)];
   TextLayout out;
   out.form = best.form;
