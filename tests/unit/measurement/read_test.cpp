@@ -218,6 +218,19 @@ TEST(ReadTest, ATextIsRefused) {
               HasSubstr("got no rows of numbers"));
 }
 
+// `stillhand export` writes all trials as one table.
+TEST(ReadTest, TheSamplesOfAWholeSessionAreRefused) {
+  std::string text = "t [s],acquired_ns [ns],accel_y_m_s2 [m/s^2],force_n [N]\n";
+  for (int i = 0; i < 200; ++i) {
+    text += "0." + std::to_string(1000 + i) + ",1,0." + std::to_string(i % 7) + ",1\n";
+  }
+  ReadOptions options;
+  options.mapping.columns = {parse_wish("t=t [s]"), parse_wish("accel_y_m_s2=a_y [m/s^2]"),
+                             parse_wish("force_n=f [N]")};
+  EXPECT_THAT(error_of(file_of(text), options), HasSubstr("got the samples of a session"));
+  EXPECT_THAT(complaint(text), HasSubstr("got the samples of a session"));
+}
+
 // Windows-1252, as spreadsheets write it; characters that a strict reader of JSON refuses become
 // others that it takes.
 TEST(ReadTest, ATitleThatIsNoUtf8IsReadAsWindows1252) {

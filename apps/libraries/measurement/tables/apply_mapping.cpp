@@ -49,9 +49,24 @@ void leave_out_empty(const Mapping& mapping, std::vector<std::vector<double>>& v
                               rows - kept.size(), rows, which));
 }
 
+// `stillhand export` writes a topic as one table.  A fit over it would mix the trials, with and
+// without motion, peg and motor, and give a good-looking number.
+void refuse_samples_of_session(const TableHead& head) {
+  const auto has = [&head](std::string_view member) {
+    return std::ranges::any_of(head.columns, [member](const ColumnHead& column) {
+      return std::string_view(column.name).ends_with(member);
+    });
+  };
+  if (!has("acquired_ns") || !has("accel_y_m_s2")) return;
+  throw ConfigError(
+      head.path, "the samples of a session, all trials in one table",
+      "the recording that they were exported from; --trial N takes one of its trials");
+}
+
 // The mapping that counts, with everything that it needs.
 Mapping complete(TableFile& file, const Mapping& asked) {
   const TableHead& head = file.head();
+  refuse_samples_of_session(head);
   Mapping mapping = asked;
   if (mapping.columns.empty()) mapping.columns = mapping_of_titles(head, asked).columns;
   if (mapping.columns.empty()) refuse_titles(file);
