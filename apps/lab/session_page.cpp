@@ -78,8 +78,9 @@ void add_budgets(const session::SessionResult& result, report::Page& page) {
 
 report::Table metrics_table(const session::SessionResult& result) {
   report::Table table{
-      "This session and the paper (Gillespie and Sövényi, Tables I and II), whose RMS error has no "
-      "unit: 5.5 mm are taken for one. One trial of a condition has no interval.",
+      "This session and the paper (Gillespie and Sövényi, Tables I and II). The paper's RMS error "
+      "has "
+      "no unit; one of its units is taken as 5.5 mm. One trial of a condition has no interval.",
       {"", "A", "B", "C", "restored (B - C)/(B - A)"}};
   for (const session::Number& shown : session::samples()) {
     table.rows.push_back(own_row(result, shown));
@@ -104,12 +105,15 @@ report::Table mitigations_table(const session::SessionResult& result) {
   return table;
 }
 
-report::Page session_page(const LabOptions& options, const session::SessionResult& result,
+report::Page session_page(const LabOptions& options,
+                          const std::vector<session::TrialOutcome>& outcomes,
+                          const session::SessionResult& result,
                           const std::vector<report::Drawing>& drawings) {
   report::Page page("One session",
                     "A: the platform stands. B: it moves. C: it moves, and the motor cancels what "
                     "the body passes on to the stick.");
   if (simulated_subject(options)) page.banner(report::kSimulatedBanner);
+  for (const std::string& line : uncounted_lines(outcomes)) page.warning(line + ".");
   page.facts({{"made by", report::made_by()},
               {"seed", fmt::to_string(options.protocol.seed)},
               {"trial", report::short_number(options.protocol.trial_s) + " s"},

@@ -18,7 +18,9 @@ report::Table mitigations_table(const session::SessionResult& result);
 /// One page for the person who tracked: the three figures of each condition next to the paper's,
 /// and the traces.  It needs no other file.
 /// @param drawings  of draw_session()
-report::Page session_page(const LabOptions& options, const session::SessionResult& result,
+report::Page session_page(const LabOptions& options,
+                          const std::vector<session::TrialOutcome>& outcomes,
+                          const session::SessionResult& result,
                           const std::vector<report::Drawing>& drawings);
 
 }  // namespace stillhand::lab

@@ -45,8 +45,8 @@ void print_budgets(const session::SessionResult& result) {
       parts +=
           fmt::format("{}{} {}", parts.empty() ? "" : ", ", cause.key, report::number(force_n, 2));
     }
-    fmt::print("{} leaves {} N of the feedthrough: {}\n", session::name_of(trial.label),
-               report::number(trial.budget->left.force_n, 2), parts);
+    fmt::print("{} leaves {} N RMS of the feedthrough force; by cause [N]: {}\n",
+               session::name_of(trial.label), report::number(trial.budget->left.force_n, 2), parts);
   }
 }
 
@@ -67,23 +67,22 @@ void print_models(const session::SessionResult& result,
   if (!control_model.empty()) std::printf("C ran %s instead\n", control_model.c_str());
   for (const session::TrialResult& trial : result.trials) {
     if (trial.label == session::Condition::kC && std::isfinite(trial.cancelled_share)) {
-      std::printf("feedthrough force cancelled while tracking: %.1f %%\n",
+      std::printf("C cancels %.1f %% of the feedthrough force, which the simulated rig knows\n",
                   100.0 * trial.cancelled_share);
     }
     if (trial.sensed_share) {
       std::printf(
           "%s removes %.0f %% (95 %%: %.0f to %.0f) of the stick's motion that the seat causes in "
-          "B; measured by the sensors\n",
+          "B, from the sensors alone\n",
           session::name_of(trial.label), 100.0 * trial.sensed_share->share,
           100.0 * trial.sensed_share->low, 100.0 * trial.sensed_share->high);
     }
   }
   if (result.conversion) {
     std::printf(
-        "with the stick fixed, the model at 1 kHz leaves %.1f %% of the feedthrough force; at 50 "
-        "Hz, "
-        "held for 20 ms, %.1f %%\n",
-        100.0 * result.conversion->control_filter, 100.0 * result.conversion->zero_order_hold);
+        "in a tracking trial, the model of the relaxed arm misses %.1f %% of the feedthrough "
+        "force\n",
+        100.0 * result.conversion->control_filter);
   }
 }
 
@@ -117,10 +116,11 @@ void write(const std::filesystem::path& path, const std::string& text) {
 }
 
 // A picture is worth a line, not the session's results.
-void draw(const LabOptions& options, const session::SessionResult& result) {
+void draw(const LabOptions& options, const std::vector<session::TrialOutcome>& outcomes,
+          const session::SessionResult& result) {
   if (result.trials.empty()) return;
   try {
-    session_page(options, result, draw_session(result, options.out))
+    session_page(options, outcomes, result, draw_session(result, options.out))
         .write(options.out / kSessionPage);
   } catch (const std::exception& error) {
     runtime::remark(std::string(kSessionFigure) + ".png is not drawn: " + error.what());
@@ -162,7 +162,7 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   }
   write(options.out / "summary.json",
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
-  draw(options, result);
+  draw(options, outcomes, result);
   print_tables(result);
   print_disturbances(result);
   print_budgets(result);
@@ -178,15 +178,9 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
     report::say_next("stillhand misses " + (options.out / "session.mcap").string() +
                      " --picture late.svg");
   }
-  std::size_t completed = 0;
-  for (const session::TrialOutcome& outcome : outcomes) {
-    if (outcome.completed) {
-      ++completed;
-      continue;
-    }
-    runtime::remark(fmt::format("trial {}, {}, does not count: {}", outcome.planned.trial.number,
-                                session::in_words(outcome.planned.label), outcome.aborted));
-  }
+  const std::vector<std::string> uncounted = uncounted_lines(outcomes);
+  for (const std::string& line : uncounted) runtime::remark(line);
+  const std::size_t completed = outcomes.size() - uncounted.size();
   return !interrupted && completed == session::plan(options.protocol).size() ? 0 : 1;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/session/misses_json.hpp"
@@ -257,7 +258,11 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
   std::vector<session::Disturbance> worst = result.disturbances;
   std::ranges::stable_sort(worst, std::greater(),
                            [](const session::Disturbance& each) { return each.miss.late_s; });
-  if (worst.size() > kMost) worst.resize(kMost);
+  // The longest of each trial first: every mark of a figure has its line.
+  std::set<session::Condition> had;
+  std::ranges::stable_partition(
+      worst, [&](const session::Disturbance& each) { return had.insert(each.label).second; });
+  if (worst.size() > kMost) worst.resize(std::max(kMost, had.size()));
   std::ranges::stable_sort(worst, {},
                            [](const session::Disturbance& each) { return each.miss.from_ns; });
   std::vector<std::string> lines;
@@ -265,9 +270,19 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
     lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::in_words(label),
                                 miss.trial_s, session::what_happened(miss)));
   }
-  if (const std::size_t all = result.disturbances.size(); all > kMost) {
-    lines.push_back(
-        fmt::format("{} shorter ones: `stillhand misses` lists them on session.mcap", all - kMost));
+  if (const std::size_t more = result.disturbances.size() - worst.size(); more > 0) {
+    lines.push_back(fmt::format(
+        "{} shorter ones: `stillhand misses --least-ms 10 session.mcap` lists them", more));
+  }
+  return lines;
+}
+
+std::vector<std::string> uncounted_lines(const std::vector<session::TrialOutcome>& outcomes) {
+  std::vector<std::string> lines;
+  for (const session::TrialOutcome& outcome : outcomes) {
+    if (outcome.completed) continue;
+    lines.push_back(fmt::format("trial {}, {}, does not count: {}", outcome.planned.trial.number,
+                                session::in_words(outcome.planned.label), outcome.aborted));
   }
   return lines;
 }

@@ -29,9 +29,11 @@ std::optional<double> settled_restoration_of(const session::SessionResult& resul
 /// The trials with a mitigation of their own, in the order of the study's table.
 std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result);
 
-/// "C disturbed at 11.5 s: sensing was late by 73 ms, force 0 for 0.12 s": the longest five, and
-/// how to see all.
+/// "C disturbed at 11.5 s: sensing was late by 73 ms, force 0 for 0.12 s": the longest five, one of
+/// each trial among them, and how to see all.
 std::vector<std::string> disturbance_lines(const session::SessionResult& result);
+/// "trial 3, C, does not count: rig: interlock opened".
+std::vector<std::string> uncounted_lines(const std::vector<session::TrialOutcome>& outcomes);
 
 /// Contents of summary.json (README, "summary.json").
 nlohmann::ordered_json summary_json(const LabOptions& options,

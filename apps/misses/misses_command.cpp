@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/result_files.hpp"
@@ -48,10 +49,13 @@ double seconds_from(const session::Miss& miss, std::int64_t at_ns) {
   return 1e-9 * static_cast<double>(at_ns - miss.from_ns);
 }
 
-// The motor force around the longest one, and the time between the samples of who was late.
+// The motor force around the longest one while the motor acted; if it never did, around the
+// longest.
 report::Figure figure_of(const session::SessionRecording& session,
                          const std::vector<session::Miss>& misses) {
-  const auto worst = std::ranges::max_element(misses, {}, &session::Miss::late_s);
+  const auto worst = std::ranges::max_element(misses, {}, [](const session::Miss& miss) {
+    return std::pair(miss.force_before_n > 0.0, miss.late_s);
+  });
   report::Panel force{.title = when(*worst) + ": " + session::what_happened(*worst),
                       .x = {.label = "time after the silence began [s]", .low = -0.5, .high = 2.0},
                       .y = {.label = "motor force [N]"}};
@@ -132,8 +136,9 @@ void add_misses_command(CLI::App& cli, int& status) {
   verb->add_flag("--why", arguments->why,
                  "also what the kernel knows: no processor, a signal, work, memory from a disk");
   verb->add_option("--json", arguments->json, "write the same as JSON to this file");
-  verb->add_option("--picture", arguments->picture,
-                   "SVG file: the motor force around the longest lateness");
+  verb->add_option(
+      "--picture", arguments->picture,
+      "SVG file: the motor force around the longest lateness in which the motor acted");
   verb->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -222,7 +222,8 @@ void judge(const SessionRecording& session, const Forces& forces, Miss& miss) {
     miss.trial_s = static_cast<double>(next->tick() - trial.start_tick) * kControlPeriod_s;
     miss.pegged = control.phase() == stillhand_msgs::PHASE_PEGGED;
     const Tick left = trial.start_tick + trial.duration_ticks - next->tick();
-    end_ns = miss.from_ns + std::max<Tick>(left, 0) * kTick_ns;
+    if (left <= 0) return;  // the force ramps down in any case
+    end_ns = miss.from_ns + left * kTick_ns;
   }
   const auto until_ns = miss.from_ns + static_cast<std::int64_t>(kNs_per_s * miss.late_s);
   judge_force(forces, until_ns, end_ns, miss);

@@ -25,7 +25,7 @@ TEST(SessionPageTest, TheSessionsFiguresStandNextToThePapers) {
                    trial(Condition::kC, 35.0)};
   LabOptions options;
   options.protocol.seed = 7;
-  const std::string sut = session_page(options, result, {}).html();
+  const std::string sut = session_page(options, {}, result, {}).html();
   for (const char* figure : {"20.00", "50.00", "35.00", "50 % (no interval)", "22.22", "52.91",
                              "38.55", "47 %", "<dd>7</dd>"}) {
     EXPECT_THAT(sut, HasSubstr(figure));
@@ -35,16 +35,16 @@ TEST(SessionPageTest, TheSessionsFiguresStandNextToThePapers) {
 
 TEST(SessionPageTest, ASimulatedSubjectIsNamedAndAPersonIsNot) {
   LabOptions options;
-  EXPECT_THAT(session_page(options, {}, {}).html(), HasSubstr("no person took part"));
+  EXPECT_THAT(session_page(options, {}, {}, {}).html(), HasSubstr("no person took part"));
   options.who = Operator::kMouse;
-  EXPECT_THAT(session_page(options, {}, {}).html(), Not(HasSubstr("no person took part")));
+  EXPECT_THAT(session_page(options, {}, {}, {}).html(), Not(HasSubstr("no person took part")));
 }
 
 TEST(SessionPageTest, MoreThanAllHasItsWord) {
   session::SessionResult result;
   result.trials = {trial(Condition::kA, 20.0), trial(Condition::kB, 50.0),
                    trial(Condition::kC, 11.0)};
-  EXPECT_THAT(session_page(LabOptions{}, result, {}).html(),
+  EXPECT_THAT(session_page(LabOptions{}, {}, result, {}).html(),
               HasSubstr("130 % (no interval), better than A"));
 }
 
@@ -54,16 +54,28 @@ TEST(SessionPageTest, TheFigureOfADisturbedTrialIsMarked) {
   session::Miss miss;
   miss.process = "sensing";
   result.disturbances = {{Condition::kC, miss}};
-  const std::string sut = session_page(LabOptions{}, result, {}).html();
+  const std::string sut = session_page(LabOptions{}, {}, result, {}).html();
   EXPECT_THAT(sut, HasSubstr("35.00 *<"));
   EXPECT_THAT(sut, HasSubstr("50.00<"));
   EXPECT_THAT(sut, HasSubstr("* C disturbed"));
 }
 
+TEST(SessionPageTest, ATrialThatDoesNotCountIsNamedWithItsReason) {
+  session::TrialOutcome outcome;
+  outcome.planned.trial.number = 3;
+  outcome.planned.label = Condition::kC;
+  outcome.aborted = "rig: interlock opened";
+  EXPECT_THAT(session_page(LabOptions{}, {outcome}, {}, {}).html(),
+              HasSubstr("trial 3, C, does not count: rig: interlock opened."));
+  outcome.completed = true;
+  EXPECT_THAT(session_page(LabOptions{}, {outcome}, {}, {}).html(),
+              Not(HasSubstr("does not count")));
+}
+
 TEST(SessionPageTest, AConditionThatDidNotRunHasNoFigure) {
   session::SessionResult result;
   result.trials = {trial(Condition::kA, 20.0)};
-  const std::string sut = session_page(LabOptions{}, result, {}).html();
+  const std::string sut = session_page(LabOptions{}, {}, result, {}).html();
   EXPECT_THAT(sut, HasSubstr("20.00"));
   EXPECT_THAT(sut, Not(HasSubstr("nan")));
 }

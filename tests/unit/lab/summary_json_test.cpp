@@ -173,6 +173,24 @@ TEST(SummaryJsonTest, ADisturbanceNamesItsTrialAsAPersonWould) {
                           "the identification (I) disturbed at 11.5 s: sensing was late by 73 ms"));
 }
 
+TEST(SummaryJsonTest, EveryDisturbedTrialHasALineHoweverShort) {
+  session::SessionResult result;
+  session::Miss miss;
+  miss.process = "sensing";
+  for (int i = 0; i < 8; ++i) {
+    miss.late_s = 0.020 + 0.001 * i;
+    miss.from_ns = i;
+    result.disturbances.push_back({Condition::kIdentification, miss});
+  }
+  miss.late_s = 0.011;
+  miss.from_ns = 8;
+  result.disturbances.push_back({Condition::kB, miss});
+  const std::vector<std::string> sut = disturbance_lines(result);
+  ASSERT_EQ(sut.size(), 6u);
+  EXPECT_EQ(sut[4].substr(0, 11), "B disturbed");
+  EXPECT_EQ(sut[5].substr(0, 15), "4 shorter ones:");
+}
+
 TEST(SummaryJsonTest, ATrialHasItsTicksMissesAndMarks) {
   session::TrialOutcome marked = outcome(2, Condition::kC);
   marked.completed = false;
