@@ -21,7 +21,7 @@ std::vector<report::Figure> study_figures(const StudyRecord& record) {
   if (!conditions_run(record, kFigureConditions).empty()) {
     figures.push_back(figure_traces(record));
     const auto& first = *record.results.front().trials.begin();
-    if (!first.second.metrics.moving_rms_mm.empty()) {
+    if (first.second.metrics.moving_rms_mm.size() > 1) {  // a line needs two windows
       figures.push_back(figure_moving_rms(record));
       figures.push_back(figure_moving_dwell(record));
     }

@@ -16,6 +16,24 @@ using report::Kind;
 using report::Panel;
 using report::Series;
 
+namespace {
+
+/// Each subject, next to the box at `place`.
+Series subjects_at(double place, Condition condition, const std::vector<double>& values) {
+  Series points{.kind = Kind::kPoints,
+                .colour = colour_of(condition),
+                .point_size = 0.7,
+                .show_in_legend = false};
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    points.x.push_back(place + 0.4);
+    points.y.push_back(value);
+  }
+  return points;
+}
+
+}  // namespace
+
 report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
   constexpr std::array<const char*, kMetricCount> kNames{"fig10_rms_error", "fig11_dwell_ratio",
                                                          "fig13_crossover"};
@@ -34,7 +52,10 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
         {place, box.minimum, box.lower_quartile, box.median, box.upper_quartile, box.maximum, {}}};
     series.show_in_legend = false;
     // Without a known value the box's zeros are no result.
-    if (metrics[metric].known > 0) panel.series.push_back(series);
+    if (metrics[metric].known > 0) {
+      panel.series.push_back(series);
+      panel.series.push_back(subjects_at(place, condition, metrics[metric].per_subject));
+    }
     panel.x.ticks.push_back({place, title_of(condition)});
     if (condition <= kC) {
       paper.x.push_back(place);
@@ -49,7 +70,7 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
   return {.name = kNames[metric],
           .caption = fmt::format(
               "The paper's {}: {} of the subjects. The box reaches from quartile to quartile, with "
-              "the median; the whiskers cover the whole range.{}",
+              "the median; the whiskers cover the whole range. Marks at its right: the subjects.{}",
               kNumbers[metric], what.title,
               !has_paper    ? ""
               : metric == 0 ? " Squares: the paper's means, at 5.5 mm a unit."

@@ -73,7 +73,8 @@ void conclude(StudyRecord& record, report::StagedFolder& folder, const runtime::
   print_study(record);
   if (record.options.subjects <= 2) {
     runtime::remark(
-        fmt::format("got {} subject(s), want 3 or more for a meaningful t-test; the paper has 12",
+        fmt::format("a t-test over {} participant(s) says nothing; 3 participants or more do, and "
+                    "the paper has 12",
                     record.options.subjects));
   }
   report::say_report(out);

@@ -304,7 +304,7 @@ class StudyTest(unittest.TestCase):
         out = self.folder / "study"
         run = study("--subjects", "2", "--trial-seconds", "20", "--identify-seconds", "20", "--out", str(out))
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("meaningful t-test", run.stderr)
+        self.assertIn("a t-test over 2 participant", run.stderr)
         self.assertIn("proves little", (out / "report.html").read_text())
 
 

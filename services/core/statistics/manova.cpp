@@ -43,15 +43,16 @@ void check(const MatrixXd& observations, const ManovaLayout& layout) {
   const Index rows = observations.rows();
   if (rows % layout.subjects != 0 || rows / layout.subjects % layout.conditions != 0 ||
       rows / layout.subjects / layout.conditions != layout.replicates) {
-    throw ConfigError("manova.observations", std::to_string(rows) + " rows",
+    throw ConfigError("observations of the MANOVA", std::to_string(rows) + " rows",
                       "subjects x conditions x replicates");
   }
   for (Index row = 0; row < rows; ++row) {
     for (Index metric = 0; metric < observations.cols(); ++metric) {
       if (!(std::abs(observations(row, metric)) <= kLargestMagnitude)) {
-        throw ConfigError(
-            "manova.observations(" + std::to_string(row) + "," + std::to_string(metric) + ")",
-            std::to_string(observations(row, metric)), "a finite value of at most 1e100");
+        throw ConfigError("observations of the MANOVA(" + std::to_string(row) + "," +
+                              std::to_string(metric) + ")",
+                          std::to_string(observations(row, metric)),
+                          "a finite value of at most 1e100");
       }
     }
   }
@@ -102,7 +103,7 @@ Parts decomposed(const MatrixXd& y, const ManovaLayout& layout) {
 // epsilon of the metric's largest magnitude.
 void check_residuals(const MatrixXd& observations, const MatrixXd& error, double error_df) {
   if (error_df < static_cast<double>(observations.cols())) {
-    throw ConfigError("manova.observations",
+    throw ConfigError("observations of the MANOVA",
                       std::to_string(std::lround(error_df)) + " degrees of freedom of the error",
                       "at least " + std::to_string(observations.cols()) +
                           ", one for each metric: more subjects, conditions or replicates");
@@ -156,7 +157,7 @@ class ErrorMetric {
   explicit ErrorMetric(const MatrixXd& error)
       : scale_(error.colwise().norm()), qr_((error * scale_.cwiseInverse().asDiagonal()).eval()) {
     if (std::abs(qr_.matrixR()(error.cols() - 1, error.cols() - 1)) < kDependent) {
-      throw ConfigError("manova.observations", "metrics with linearly dependent residuals",
+      throw ConfigError("observations of the MANOVA", "metrics with linearly dependent residuals",
                         "metrics of which none is a linear combination of the others");
     }
   }

@@ -129,9 +129,10 @@ std::string message_of(const MatrixXd& observations, const ManovaLayout& layout)
 }
 
 TEST(ManovaTest, TooFewDegreesOfFreedomAreNamed) {
-  EXPECT_EQ(message_of(golden_trials(2).part(5, 2, 1, 5), {5, 2, 1}),
-            "manova.observations: got 4 degrees of freedom of the error, want at least 5, one for "
-            "each metric: more subjects, conditions or replicates");
+  EXPECT_EQ(
+      message_of(golden_trials(2).part(5, 2, 1, 5), {5, 2, 1}),
+      "observations of the MANOVA: got 4 degrees of freedom of the error, want at least 5, one for "
+      "each metric: more subjects, conditions or replicates");
   EXPECT_EQ(message_of(golden_trials(2).part(6, 2, 1, 5), {6, 2, 1}), "accepted");
 }
 
@@ -166,7 +167,7 @@ TEST(ManovaTest, SizesThatDisagreeAreRefused) {
   MatrixXd unsound = trials;
   unsound(4, 1) = std::nan("");
   EXPECT_EQ(message_of(unsound, {12, 3, 1}),
-            "manova.observations(4,1): got nan, want a finite value of at most 1e100");
+            "observations of the MANOVA(4,1): got nan, want a finite value of at most 1e100");
 }
 
 }  // namespace

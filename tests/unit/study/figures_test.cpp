@@ -127,9 +127,11 @@ TEST(StudyFiguresTest, EveryConditionHasAColourOfItsOwn) {
 TEST(FigureBoxTest, ABoxIsTheFiveNumbersOfItsCondition) {
   const StudyRecord record = record_of(random_results(7, "BA", 87));
   const Panel sut = figure_box(record, 1).panels.at(0);
-  ASSERT_EQ(sut.series.size(), 3u);
+  ASSERT_EQ(sut.series.size(), 5u);  // of each condition a box and its subjects; the paper
+  EXPECT_THAT(sut.series[3].y,
+              testing::ElementsAreArray(record.analysis.conditions.at(kB)[1].per_subject));
   const auto& want = record.analysis.conditions.at(kB)[1].box;
-  const report::Box& box = sut.series[1].boxes.at(0);
+  const report::Box& box = sut.series[2].boxes.at(0);
   EXPECT_EQ(box.low, want.minimum);
   EXPECT_EQ(box.lower_quartile, want.lower_quartile);
   EXPECT_EQ(box.median, want.median);
@@ -148,7 +150,7 @@ TEST(FigureBoxTest, ThePapersMeansStandAtTheirOwnConditions) {
   EXPECT_THAT(paper.x, ElementsAre(sut.x.ticks[0].at, sut.x.ticks[1].at));
   EXPECT_THAT(figure_box(record, 2).panels.at(0).series.back().y, ElementsAre(0.25, 0.14));
   const Panel without = figure_box(record_of(random_results(2, "DE", 88)), 0).panels.at(0);
-  EXPECT_THAT(without.series, Each(testing::Field(&Series::kind, Kind::kBox)));
+  EXPECT_THAT(without.series, Each(testing::Field(&Series::label, testing::IsEmpty())));
 }
 
 // A crossover of 0 Hz would be a result; none was found.
