@@ -60,7 +60,7 @@ Explanation against_variable(const Evidence& evidence, const EffectTrace& trace,
         means_line("the effect", report::Colour::kModel, Kind::kLine,
                    means(trace.contribution, weight)),
         with_errors("without it", kBefore, means(trace.without, weight))};
-    panel.series.front().point_size = 0.7;
+    panel.series.front().point_size = 1.0;
     result.text = "means by bins of the variable that explains the effect";
     return result;
   }

@@ -110,24 +110,12 @@ report::Figure figure_spectra(const Evidence& evidence) {
   panel.y = {.label = "PSD [" + (square == "-" ? "1" : square) + "/Hz]",
              .scale = Scale::kLogarithmic};
   const Spectrum output = spectrum_of(signals.output().values, all, signals);
-  // As if white: its square spread over all frequencies.
-  const double over_hz = 0.5 * signals.rate_hz();
-  const auto density = [over_hz](double rms) { return rms * rms / over_hz; };
   if (!output.frequency_hz.empty()) {
-    Series floor{.kind = Kind::kBand,
-                 .colour = report::Colour::kNeutral,
-                 .x = {output.frequency_hz.front(), output.frequency_hz.back()},
-                 .show_in_legend = false};
-    floor.y_low.assign(2, density(found.noise_floor.low));
-    floor.y_high.assign(2, density(found.noise_floor.high));
-    panel.series.push_back(floor);
-    floor.label = "noise floor, if white";
-    floor.kind = Kind::kDottedLine;
-    floor.y.assign(2, density(found.noise_floor.rmse));
-    floor.show_in_legend = true;
-    panel.series.push_back(floor);
     panel.x.low = output.frequency_hz.front();
     panel.x.high = output.frequency_hz.back();
+  }
+  for (const double bound_hz : {signals.lowest_excited_hz(), signals.highest_excited_hz()}) {
+    panel.reference_lines.push_back({report::Direction::kVertical, bound_hz});
   }
   panel.series.push_back(spectrum_series("output", report::Colour::kMeasured, 1.4, output));
   std::vector<Series> residuals{
@@ -144,8 +132,8 @@ report::Figure figure_spectra(const Evidence& evidence) {
           .caption = "Power spectral densities after Welch. The inputs excite " +
                      report::short_number(signals.lowest_excited_hz()) + " to " +
                      report::short_number(signals.highest_excited_hz()) +
-                     " Hz. Grey: the noise floor and its interval, spread evenly over all "
-                     "frequencies.",
+                     " Hz, between the vertical lines; outside of them the model only leaves what "
+                     "is not of the inputs.",
           .panels = {panel},
           .width_px = 980,
           .height_px = 420};
@@ -179,7 +167,8 @@ report::Figure figure_autocorrelation(const Evidence& evidence) {
           .caption = "Autocorrelation of the residual. Outside the bounds: " +
                      percent(found.before.whiteness.share_outside, 0) + " of the lags" +
                      (both ? " before, " + percent(whiteness.share_outside, 0) + " after" : "") +
-                     "; white noise has 1 %. Coloured noise is not an effect.",
+                     "; white noise has 1 %. Coloured noise does this too: it alone does not show "
+                     "a missing effect.",
           .panels = {panel},
           .width_px = 980,
           .height_px = 320};

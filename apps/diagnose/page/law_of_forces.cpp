@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <span>
 
 #include "apps/diagnose/page/binned_series.hpp"
 #include "apps/diagnose/page/binning.hpp"
@@ -25,7 +27,7 @@ using report::Panel;
 constexpr std::size_t kNarrowBins = 200;  // for laws with many turns
 constexpr double kNoMemory = 0.98;        // of the force's variance that lies between narrow bins
 
-// Samples of the largest swing of x within one stretch.
+// Samples of the stretch in which x swings most.
 std::pair<std::size_t, std::size_t> largest_swing(const Evidence& evidence,
                                                   const std::vector<double>& x) {
   const std::size_t wanted = report::excerpt_length(x, evidence.signals.rate_hz());
@@ -46,6 +48,29 @@ std::pair<std::size_t, std::size_t> largest_swing(const Evidence& evidence,
   return best;
 }
 
+// Where x turns back up, on the way down from a peak; a tenth of the range is a turn.
+template <typename Iterator>
+Iterator trough_after(Iterator peak, Iterator end, double range) {
+  Iterator lowest = peak;
+  for (Iterator at = peak; at != end && *at < *lowest + 0.1 * range; ++at) {
+    if (*at < *lowest) lowest = at;
+  }
+  return lowest;
+}
+
+// Up to the largest peak of that stretch and down again: one loop.
+std::pair<std::size_t, std::size_t> largest_loop(const Evidence& evidence,
+                                                 const std::vector<double>& x) {
+  const auto [first, end] = largest_swing(evidence, x);
+  const std::span<const double> all = std::span(x).subspan(first, end - first);
+  const auto [low, high] = std::ranges::minmax_element(all);
+  const double range = *high - *low;
+  const auto down = trough_after(high, all.end(), range);
+  const auto up = trough_after(std::make_reverse_iterator(high), all.rend(), range);
+  return {first + static_cast<std::size_t>(up.base() - all.begin()),
+          first + static_cast<std::size_t>(down - all.begin())};
+}
+
 bool has_memory(const Evidence& evidence, const std::vector<double>& x,
                 const std::vector<double>& y) {
   const std::vector<double>& weight = evidence.after.run.weight;
@@ -54,7 +79,7 @@ bool has_memory(const Evidence& evidence, const std::vector<double>& x,
 
 void add_loop(const Evidence& evidence, const std::vector<double>& x, const std::vector<double>& y,
               Panel& panel) {
-  const auto [first, end] = largest_swing(evidence, x);
+  const auto [first, end] = largest_loop(evidence, x);
   const auto cut = [first = first, end = end](const std::vector<double>& all) {
     return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(first),
                                all.begin() + static_cast<std::ptrdiff_t>(end));
@@ -104,7 +129,7 @@ Law term_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tr
   panel.y.label = axis_label("force of the effect", evidence.found.output_unit);
   if (has_memory(evidence, over.values, force)) {
     add_loop(evidence, over.values, force, panel);
-    return {{panel}, "The loop of the effect's force over the largest motion."};
+    return {{panel}, "One loop of the effect's force, at the largest motion."};
   }
   const std::vector<std::size_t> samples = spread_over(evidence, over.values);
   const auto values_at = [&](const std::vector<double>& all) {
@@ -123,7 +148,7 @@ Law term_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tr
                           .colour = kAfter,
                           .x = left.centre,
                           .y = left.mean,
-                          .point_size = 0.7});
+                          .point_size = 1.0});
   panel.series.push_back(with_errors("without it", kBefore, means(trace.without)));
   add_with_band("the effect", values_at(over.values), values_at(force),
                 evidence.errors.of([&](const Model& model) {
@@ -150,7 +175,7 @@ Law loop_law(const Evidence& evidence, const SizeCase& at) {
   panel.y.label = axis_label("force of the nonlinearity, at 0 Hz", unit);
   if (has_memory(evidence, x, y)) {
     add_loop(evidence, x, y, panel);
-    return {{panel}, "The loop of the nonlinearity over the largest motion (DG-74, DG-75)."};
+    return {{panel}, "One loop of the nonlinearity, at the largest motion (DG-74, DG-75)."};
   }
   const BinAxis axis = axis_over(x, evidence.after.run.weight, kLawPoints);
   std::vector<double> over;
