@@ -151,7 +151,7 @@ export class Graph {
         if (away && going) missing.push(node.name);
         const touched = this.faults.filter(({ reader, active }) => active && reader === node.name);
         const edges = new Set(touched.map(({ topic }) => topic)).size;
-        const told = service.state === undefined ? "missing" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : edges > 0 ? `${edges} edge${edges === 1 ? "" : "s"} at fault` : service.state;
+        const told = service.state === undefined ? "missing" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : edges > 0 ? `${edges} connection${edges === 1 ? "" : "s"} at fault` : service.state;
         const level = (away && going) || service.state === "fault" ? "critical" : worstOf(touched);
         node.show(away && !going ? "none" : worse(level, levels.get(node.name) ?? "healthy"), told);
       } else {
@@ -164,7 +164,7 @@ export class Graph {
     }
     const active = this.faults.filter(({ active: now }) => now).length;
     const absent = missing.length > 0 ? `missing: ${missing.join(", ")}` : "no process is missing";
-    mark(this.svg, "aria-label", `Processes and topics along the control chain. ${going ? absent : "no session runs"}; ${active === 0 ? "no edge is at fault now" : `${active} fault${active === 1 ? "" : "s"} of edges now, listed below`}`);
+    mark(this.svg, "aria-label", `Processes and topics along the control chain. ${going ? absent : "no session runs"}; ${active === 0 ? "no connection is at fault now" : `${active} fault${active === 1 ? "" : "s"} of connections now, listed below`}`);
   }
 
   // The same as a table.

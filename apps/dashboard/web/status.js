@@ -41,7 +41,7 @@ function strip(level, word, text, since) {
 // A silence ends because the writer sends again or because the session is over.
 function ended({ active, watch }, state) {
   if (active) return "";
-  if (watch !== "missing" && watch !== "silent") return "; over now";
+  if (watch !== "missing" && watch !== "silent") return "; ended";
   return state === "ending" ? "; the session is over" : "; back now";
 }
 
@@ -92,7 +92,7 @@ export function showStatus(snapshot) {
     stripOfAlarms(shown, session.state, now, recording ? `; ${title}` : "");
   } else if (session.state === "running" || session.state === "paused") {
     const paused = session.state === "paused" || session.paused ? "no trial begins until Start is pressed; " : "";
-    const before = alarms.length > 0 ? `; ${alarms.length} earlier alarm${alarms.length === 1 ? "" : "s"}, over now` : "";
+    const before = alarms.length > 0 ? `; ${alarms.length} earlier alarm${alarms.length === 1 ? "" : "s"}, ended` : "";
     strip("healthy", WORDS.healthy, paused + title + before, recording ? clock(now) : `since ${clock(snapshot.level_since_ms)}\n${span(now - snapshot.level_since_ms)}`);
   } else {
     const absent = snapshot.services.filter(({ state }) => state === undefined).map(({ service }) => service);

@@ -111,7 +111,7 @@ export class Tables {
       { text: "DDS misses", title: "deadlines that DDS reported as missed to its readers, in whole milliseconds" },
       { text: "cycle misses", title: "late cycles by the process's own supervision, in microseconds" }, "lost ticks", { text: "waits for", left: true }]);
     this.rigs = new Table("rigs", ["rig", { text: "level", left: true }, { text: "session", left: true }, { text: "worst", left: true }, "samples", "lost"]);
-    this.edges = new Table("edges", ["edge", "matched", "samples", "lost ticks", { text: "cycle misses", title: "late cycles by the reader's own supervision, in microseconds" },
+    this.edges = new Table("edges", ["connection", "matched", "samples", "lost ticks", { text: "cycle misses", title: "late cycles by the reader's own supervision, in microseconds" },
       { text: "DDS misses", title: "deadlines that DDS reported as missed, in whole milliseconds" }, "longest interval [ms]", { text: "latency p99 [µs]", title: "from stamp to arrival, corrected for the offset of the clocks" }]);
     element("edges-part").addEventListener("toggle", () => this.graph && this.showEdges(this.graph));
     this.hosts = new Table("hosts", [{ text: "host" }, { text: "processes", left: true }, { text: "CPU", title: "of all its cores" }, "cores", "clock [µs]", "± [µs]"]);
@@ -199,7 +199,7 @@ export class Tables {
       item.dataset.level = alarm.level;
       item.append(create("b", alarm.level), create("span", what(alarm)));
       if (alarm.count > 1) item.append(create("span", `${alarm.count} times`, "faint"));
-      if (!alarm.active) item.append(create("span", "over now", "faint"));
+      if (!alarm.active) item.append(create("span", "ended", "faint"));
       if (alarm.acknowledged && alarm.watch !== "qos") item.append(create("span", "acknowledged", "faint"));
       item.append(create("time", clock(alarm.since_ms)));
       return item;
