@@ -142,9 +142,10 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       "diagnose",
       "Finds what the model lacks. Fits a linear model to the recording, takes the residual of "
       "its\nfree run (its prediction from the inputs alone) on samples that the fit has not seen, "
-      "traces\nit to an effect, adds the effect, and prints the error before and after. "
-      "services/core/diagnosis/README.md lists the "
-      "kinds of effect.\nREC: the MCAP file of a session, or a CSV, MATLAB, HDF5, ROS 2 (MCAP) or "
+      "traces\nit to an effect, adds the effect, and prints the error before and after. The kinds "
+      "of "
+      "effect:\nservices/core/diagnosis/README.md.\nREC: the MCAP file of a session, or a CSV, "
+      "MATLAB, HDF5, ROS 2 (MCAP) or "
       "sound file with\ncolumns 'name [unit]' and 't [s]'. For other columns, use --map. Several "
       "recordings of one rig\nare diagnosed together.\nExample: stillhand diagnose ride.csv "
       "--input a_y --output f --json out.json --report DIR");
@@ -169,7 +170,8 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   verb->add_option("--save", arguments->save,
                    "file for the diagnosed model, for `stillhand predict`")
       ->check(settings::check_name);
-  verb->add_option("--json", arguments->json, "file for the verdict")->check(settings::check_name);
+  verb->add_option("--json", arguments->json, "file for the verdict; - is standard output")
+      ->check(settings::check_name);
   verb->add_option("--report", arguments->report, "folder for a page with figures")
       ->check(settings::check_name);
   verb->callback([arguments, &status] { status = run(*arguments); });

@@ -49,6 +49,8 @@ std::string sizes_in_words(const FoundEffect& found) {
     if (std::isfinite(size.std_error)) each += fmt::format(" +- {:.2g}", size.std_error);
     if (!diagnosis::is_plain_unit(size.unit)) each += " " + size.unit;
     if (size.at_hz) each += fmt::format(" at {:.3g} Hz", *size.at_hz);
+    // Two standard errors that reach 0.
+    if (2.0 * size.std_error > std::abs(size.value)) each += " (hardly determined)";
     words.push_back(std::move(each));
   }
   return fmt::format("{}", fmt::join(words, ", "));
@@ -213,7 +215,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   };
   add("verdict       {}{}\n", diagnosis.verdict(),
       !diagnosis.no_model && none_carried(diagnosis)
-          ? ", none of which would hold in another recording: --save keeps the linear model alone"
+          ? ", none of which can be used for another recording: --save writes the linear model"
           : "");
   if (diagnosis.stability) add("stability     {}\n", stability_in_words(*diagnosis.stability));
   if (diagnosis.no_model) {
@@ -241,9 +243,9 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   add_error("final", diagnosis.final_error, diagnosis.effects.empty() ? "" : " (with all effects)");
   if (!diagnosis.effects.empty()) {
     add_error("saved", diagnosis.carried_error,
-              " (with what holds in another recording: the model of --save)");
+              " (with what can predict another recording: the model of --save)");
   }
-  add("noise floor   {:.4g} {} ({:.4g} to {:.4g}), which a model without fault would leave\n",
+  add("noise floor   {:.4g} {} ({:.4g} to {:.4g}), the estimated error of a perfect model\n",
       diagnosis.noise_floor.rmse, unit, diagnosis.noise_floor.low, diagnosis.noise_floor.high);
   if (diagnosis.unexplained) add("unexplained   {}\n", diagnosis.unexplained->what);
   for (const std::string& note : diagnosis.notes) add("note          {}\n", note);

@@ -123,7 +123,8 @@ void add_identify_command(CLI::App& cli, int& status) {
   verb->add_option("--save", arguments->save,
                    "file for the model, in the form that cancellation reads")
       ->check(settings::check_name);
-  verb->add_option("--json", arguments->json, "file for all results")->check(settings::check_name);
+  verb->add_option("--json", arguments->json, "file for all results; - is standard output")
+      ->check(settings::check_name);
   verb->add_flag(
       "--admittance", arguments->admittance,
       "for a session of `stillhand lab --identify admittance,feedthrough`: print admittance and "

@@ -69,7 +69,7 @@ std::string assumed_of(const IdentifyResult& result) {
   return fmt::format(
       "signs and units as the columns state them ({} has {} at 0 Hz); one recording does not show "
       "whether they are right{}",
-      result.output, same ? "the sign of " + result.input : "not the sign of " + result.input,
+      result.output, same ? "the sign of " + result.input : "the sign opposite to " + result.input,
       unchecked.empty() ? "" : "; " + unchecked);
 }
 
@@ -77,7 +77,7 @@ std::string assumed_of(const IdentifyResult& result) {
 std::string beyond(const IdentifyResult& result, double frequency_hz) {
   const bool inside =
       frequency_hz >= result.excited.low_hz && frequency_hz <= result.excited.high_hz;
-  return inside ? "" : ", of the model alone: outside of the excited band";
+  return inside ? "" : ", extrapolated by the model: the input has no power there";
 }
 
 std::string quality_lines(const IdentifyResult& result) {
@@ -85,11 +85,11 @@ std::string quality_lines(const IdentifyResult& result) {
   std::string text =
       fmt::format("stable             {}\n", signal::is_stable(result.model.fit) ? "yes" : "no");
   text += fmt::format(
-      "free run, unseen   {}, RMS error {:.4g} {} (last quarter, fit to the rest, from the input "
-      "alone; VAF: share of "
-      "the variance explained)\n",
+      "free run, unseen   {}, RMS error {:.4g} {} (last quarter, {:.3g} s, fit to the rest, from "
+      "the "
+      "input alone; VAF: share of the variance explained)\n",
       diagnosis::vaf_in_words(heldout.free_run_vaf_percent), heldout.free_run_rms_n,
-      result.output_unit);
+      result.output_unit, static_cast<double>(heldout.samples) / result.model.fit.rate_hz);
   // The next sample alone is known well enough from the last one.
   if (result.unusable.empty()) {
     text += fmt::format("one step, unseen   {}\n",

@@ -140,7 +140,7 @@ std::string judgement_table(const Judgement& judgement) {
   const std::string& unit = judgement.measured.unit;
   return (judgement.unusable.empty() ? "" : "usable   no: " + judgement.unusable + "\n") +
          (judgement.linear ? line_of("linear", judgement.linear->score, unit) : std::string()) +
-         line_of("carried", judgement.carried.score, unit);
+         line_of(judgement.linear ? "effects" : "model", judgement.carried.score, unit);
 }
 
 std::string judgement_json(const Prediction& prediction, const std::optional<Judgement>& judgement,

@@ -95,7 +95,7 @@ report::Figure judgement_figure(const Judgement& judgement) {
     add_model("linear", *judgement.linear, report::Colour::kWarning, Kind::kDashedLine, judgement,
               at, above, below);
   }
-  add_model("carried", judgement.carried, report::Colour::kAccent, Kind::kLine, judgement, at,
+  add_model("with effects", judgement.carried, report::Colour::kAccent, Kind::kLine, judgement, at,
             above, below);
   for (Panel* panel : {&above, &below}) {
     panel->x.low = judgement.time_s[at.first];

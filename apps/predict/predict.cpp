@@ -66,17 +66,12 @@ void add_ranges(const std::vector<diagnosis::LeftRange>& left, Prediction& predi
     const std::string what = range.of == "argument" ? "what it acts on" : range.of;
     const std::string unit = range.unit.empty() ? "" : " " + range.unit;
     std::string note = each.effect.empty() ? what : each.effect + ": " + what;
-    note += " leaves the range that was seen, " + digits_of(range.low);
-    note += " to " + digits_of(range.high);
-    note += unit;
-    note += ", in " + digits_of(100.0 * each.share);
-    note += " % of the samples; ";
-    if (each.effect.empty()) {
-      note += "the linear part continues";
-    } else {
-      note += "the effect is held below " + digits_of(range.lower_edge());
-      note += " and above " + digits_of(range.upper_edge());
-    }
+    note += " leaves the range that was seen, ";
+    // What acts inside a body has a scale of its own.
+    if (!unit.empty()) note += digits_of(range.low) + " to " + digits_of(range.high) + unit + ", ";
+    note += "in " + digits_of(100.0 * each.share) + " % of the samples; ";
+    note += each.effect.empty() ? "the linear part continues"
+                                : "far outside of it the effect keeps its value";
     prediction.notes.push_back(std::move(note));
   }
 }
@@ -91,9 +86,9 @@ void add_bands(const std::vector<diagnosis::ExcitedBand>& bands, const diagnosis
         diagnosis::power_outside(band, input.values, input.mean, signals.rate_hz());
     if (share < kWorthANote) continue;
     prediction.notes.push_back(
-        digits_of(100.0 * share) + " % of the power of " + band.of + " lie outside " +
+        digits_of(100.0 * share) + " % of the power of " + band.of + " lies outside " +
         digits_of(band.low_hz) + " to " + digits_of(band.high_hz) +
-        " Hz, the band of the fitted recording; outside of it the model is not determined");
+        " Hz, the band of the fitted recording, on which alone the model was fitted");
   }
 }
 

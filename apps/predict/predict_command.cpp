@@ -112,13 +112,13 @@ void add_predict_command(CLI::App& cli, int& status) {
   CLI::App* verb = cli.add_subcommand(
       "predict",
       "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\nIf "
-      "the recording holds the output too, the verb prints RMSE, VAF (the share of the "
-      "variance that is\nexplained) and fit, of the linear model and of the carried one. The "
-      "carried model is the linear model with the effects that "
-      "hold in\nanother recording. A tone, a drift, a burst and a changing gain do not: they are "
-      "left out.\nOutside of the range of the first recording, an effect keeps its value at the "
-      "range's end.\nA note reports each case.\nExample: stillhand predict model.json ride.csv "
-      "--out prediction.csv");
+      "the recording holds the output too, the verb prints RMSE, VAF (the share of the variance\n"
+      "that is explained) and fit, of the linear model and of the one with effects. A tone, a "
+      "drift,\na burst and a changing gain belong to one recording and are left out. Outside of "
+      "the "
+      "range\nthat was seen, an effect keeps its value. A note reports each case.\nExample: "
+      "stillhand "
+      "predict model.json ride.csv --out prediction.csv");
   verb->add_option("MODEL", arguments->model, "model file")->required();
   verb->add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
       ->required();
@@ -133,9 +133,10 @@ void add_predict_command(CLI::App& cli, int& status) {
                    "rows at the start of REC whose measured output gives the model's state there; "
                    "the scores leave them out [0: the state comes from the inputs]")
       ->check(CLI::Range(0, 1000000));
-  verb->add_option("--json", arguments->json,
-                   "file for RMSE, VAF and fit of the linear and the carried model; - is standard "
-                   "output, and the text then goes to standard error")
+  verb->add_option(
+          "--json", arguments->json,
+          "file for RMSE, VAF and fit of the model, without and with effects; - is standard "
+          "output, and the text then goes to standard error")
       ->check(settings::check_name);
   verb->add_option("--picture", arguments->picture,
                    "PNG or SVG file: an excerpt of the measured output, both predictions and their "

@@ -105,6 +105,7 @@ std::string info_text(const RecordingInfo& info) {
   for (const recording::Metadata& metadata : info.metadata) {
     text += "\n" + shown(metadata.name) + "\n";
     for (const auto& [key, value] : metadata.texts) {
+      if (metadata.name == "stillhand.counts" && value == "0") continue;  // most of a hundred
       text += fmt::format("  {}: {}\n", shown(key), shown(value));
     }
   }

@@ -208,7 +208,7 @@ std::string play(const ReplayOptions& options, const PlaySpan& span, const Playe
 void print_end(const Player& player, std::size_t channels, std::uint64_t unheard) {
   const recording::ReleaseErrors& errors = player.errors();
   fmt::print("{} messages of {} channels played\n", player.released(), channels);
-  if (unheard > 0) fmt::print("{} of them while their topic had no reader\n", unheard);
+  if (unheard > 0) fmt::print("no program received {} of them\n", unheard);
   const std::int64_t median_us = errors.percentile_us(0.50);
   if (median_us > kTooLate_us) {
     fmt::print(

@@ -55,7 +55,10 @@ def program():
 
 
 def _run(*words):
-    done = subprocess.run([program(), *map(str, words)], capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run([program(), *map(str, words)], capture_output=True, text=True, check=False)
+    except FileNotFoundError:
+        raise StillhandError(f"{program()}: no such program; set STILLHAND_PROGRAM", 127) from None
     if done.returncode != 0:
         raise StillhandError((done.stderr.strip().splitlines() or ["no reason given"])[-1], done.returncode)
     return done.stdout

@@ -71,7 +71,7 @@ void add_errors(Page& page, const Evidence& evidence,
   const Diagnosis& found = evidence.found;
   page.section("Error before and after");
   page.table(error_table(found));
-  page.paragraph("The noise floor is the error that a complete model would leave. Its source: " +
+  page.paragraph("The noise floor is the estimated error of a perfect model. Its source: " +
                  shown_sentence(found.noise_floor.method, found.output_unit) + ".");
   add_figure(page, drawings, "prediction");
   add_figure(page, drawings, "residual_spectra");

@@ -38,15 +38,19 @@ std::string enumerated(const std::vector<std::string>& names) {
 // Of the model that is saved, and of all effects where it does not have them whole.
 std::string error_in_words(const Diagnosis& diagnosis) {
   const std::string unit = diagnosis.output_unit;
-  const diagnosis::HeldOutError& carried = diagnosis.carried_error;
+  const bool none = none_carried(diagnosis);
+  const diagnosis::HeldOutError& shown_error =
+      none ? diagnosis.final_error : diagnosis.carried_error;
   const bool whole = std::ranges::all_of(
       diagnosis.effects, [](const FoundEffect& effect) { return effect.carried == 1.0; });
   const std::string it = diagnosis.effects.size() == 1 ? "it" : "them";
-  return "With " + (whole ? it : "the part of " + it + " that the saved model carries") +
-         ", the RMS error on held-out data is " + shown(carried.rmse, unit) +
-         " (95 %: " + interval(carried.low, carried.high) + ") instead of " +
+  return "With " + (whole || none ? it : "the part of " + it + " that is saved") +
+         ", the RMS error on held-out data is " + shown(shown_error.rmse, unit) +
+         " (95 %: " + interval(shown_error.low, shown_error.high) + ") instead of " +
          shown(diagnosis.baseline_error.rmse, unit) +
-         (whole ? "" : "; with all of " + it + ", " + shown(diagnosis.final_error.rmse, unit)) +
+         (none    ? "; none of " + it + " is saved for other recordings"
+          : whole ? ""
+                  : "; with all of " + it + ", " + shown(diagnosis.final_error.rmse, unit)) +
          ". The noise floor is " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
          interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ").";
 }
@@ -120,7 +124,8 @@ std::string percent(double share, int decimals) {
 }
 
 std::string carried_in_words(const FoundEffect& effect) {
-  if (effect.carried == 1.0) return "saved whole: it holds in another recording";
+  if (effect.carried == 1.0)
+    return "saved: it needs the inputs alone, so it can predict another recording";
   const std::string why = effect.why_not_carried.empty() ? "" : ": " + effect.why_not_carried;
   return (effect.carried > 0.0 ? "saved to " + percent(effect.carried, 0) : "not saved") + why;
 }
@@ -160,8 +165,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
       tied = tied || !effect.ties.empty();
     }
     return "Effects found: " + model + " lacks " + enumerated(names) +
-           (diagnosis.unexplained ? ", and something that no kind of effect explains" : "") +
-           (none_carried(diagnosis) ? ", none of which the saved model carries" : "") + ". " +
+           (diagnosis.unexplained ? ", and something that no kind of effect explains" : "") + ". " +
            (too_small.empty() ? "" : too_small + " ") + error_in_words(diagnosis) +
            " The probability of such an improvement by chance is " + p_value(largest_p) +
            (names.size() == 1 ? "." : " for the smallest of them.") +

@@ -33,7 +33,7 @@ std::string p_value(double p);
 /// "12.3 %"; an en dash for a number that is not finite.
 std::string percent(double share, int decimals = 1);
 
-/// "saved whole: it holds in another recording", "saved to 67 %: ..." or "not saved: ...".
+/// "saved: it needs the inputs alone, ...", "saved to 67 %: ..." or "not saved: ...".
 std::string carried_in_words(const diagnosis::FoundEffect& effect);
 /// True when effects were found and the model that is saved has none of them.
 bool none_carried(const diagnosis::Diagnosis& diagnosis);

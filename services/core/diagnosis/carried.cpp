@@ -23,7 +23,7 @@ constexpr const char* kLikeTime =
 constexpr const char* kLikeSlowNoise =
     "most of what it adds is slower than the motion, and slow noise looks like it";
 constexpr const char* kNotNeeded =
-    "the parts of the recording predict each other equally well without it";
+    "a fit to one part of the recording predicts the others as well without it";
 
 LeftOut left_out(const Effect& effect, std::string why) {
   return {{effect.kind, effect.form, effect.channels, {}, {}}, std::move(why)};

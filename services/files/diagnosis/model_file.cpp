@@ -282,7 +282,9 @@ Model parse_model(std::string_view json, const std::string& origin) {
       json, origin, "JSON of a diagnosed model, as `stillhand diagnose --save` writes");
   const Entry top(whole, origin);
   if (top.at("format").text() != kFormat) {
-    top.at("format").refuse("\"stillhand augmented model\", as `stillhand diagnose --save` writes");
+    top.at("format").refuse(
+        "\"stillhand augmented model\", as `stillhand diagnose --save` writes (that of `stillhand "
+        "identify --save` is for the canceller)");
   }
   const auto version = top.at("version").count();
   if (version < 1 || version > kModelFormatVersion) {

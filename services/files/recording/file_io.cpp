@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <system_error>
 
 #include "services/core/contract/config_error.hpp"
@@ -77,7 +78,10 @@ FileSource::FileSource(const std::string& path)
   struct stat facts{};
   if (::fstat(descriptor_, &facts) != 0 || !S_ISREG(facts.st_mode)) {
     ::close(descriptor_);
-    throw ConfigError(path, "not a regular file", "a file");
+    const auto session = std::filesystem::path(path) / "session.mcap";
+    std::error_code ignored;
+    throw ConfigError(path, "not a regular file",
+                      std::filesystem::exists(session, ignored) ? session.string() : "a file");
   }
   size_ = static_cast<std::uint64_t>(facts.st_size);
 }

@@ -28,7 +28,7 @@ McapReader::McapReader(ByteSource& source, McapReaderOptions options)
     status_ = Status::failure(
         StatusKind::kDamaged,
         version_at(0) ? "an MCAP file of version " + std::string(1, *version_at(0))
-                      : "not an MCAP file: neither its first bytes nor any chunk in it");
+                      : "not an MCAP file: neither its first bytes nor any chunk in it is one");
   }
 }
 
