@@ -179,6 +179,10 @@ const TrialRun& LoopResult::trial(const std::string& label) const {
   return *found;
 }
 
+std::vector<const TrialRun*> cancelling_trials(const LoopResult& result) {
+  return {&result.trial("C"), &result.trial("C'"), &result.plus()};
+}
+
 LoopResult close_loop(Session& session, const LoopOptions& options) {
   return Loop(session, options).run();
 }

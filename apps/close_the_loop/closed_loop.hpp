@@ -48,6 +48,9 @@ struct LoopResult {
   [[nodiscard]] const Verdict& verdict() const { return rounds[final_round].verdict; }
 };
 
+/// Those of C, C' and C+.
+std::vector<const TrialRun*> cancelling_trials(const LoopResult& result);
+
 /// Identifies, runs A, B and C with the paper's model and C' with the same model followed,
 /// diagnoses, augments and runs C+; repeats until nothing new is found or C+ no longer improves,
 /// README "The loop".  The last good model stays.

@@ -150,7 +150,7 @@ void run_live(const Arguments& arguments) {
     record.result = close_loop(session, record.options);
   });
   if (record.result.rounds.empty()) throw diagnosis::Interrupted();
-  judge_cancellation(recording, live.outcomes, record.result);
+  judge_cancellation(recording, live.outcomes, lab::answers_of(arguments.lab), record.result);
   record.conditions = own_trials(record.result);
   record.decision = decide(record.conditions, record.result);
   // The verdict is written before the truth is opened.

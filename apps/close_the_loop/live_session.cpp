@@ -69,14 +69,16 @@ std::string LiveTrialSession::use(const cancellation::ControlModel& model) {
 }
 
 void judge_cancellation(const std::filesystem::path& recording,
-                        const std::vector<session::TrialOutcome>& outcomes, LoopResult& result) {
-  const session::SessionResult session = session::evaluate(recording.string(), outcomes);
+                        const std::vector<session::TrialOutcome>& outcomes,
+                        const std::optional<session::AnswerConfigs>& answers, LoopResult& result) {
+  const session::SessionResult session = session::evaluate(recording.string(), outcomes, answers);
   const auto add = [&](TrialRun& run) {
     const auto trial = std::ranges::find(session.trials, run.number, &session::TrialResult::number);
     if (trial == session.trials.end()) return;
     run.cancelled_share = trial->cancelled_share;
     run.counterforce_delay_s = trial->counterforce_delay_s;
     run.forces = trial->forces;
+    run.budget = trial->budget;
   };
   for (TrialRun& run : result.trials) add(run);
   for (Round& round : result.rounds) add(round.trial);

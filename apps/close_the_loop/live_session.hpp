@@ -27,9 +27,12 @@ class LiveTrialSession final : public Session {
   std::int64_t last_number_ = -1;
 };
 
-/// Adds to each trial the share of force that was cancelled, the delay of the counterforce and the
-/// forces.  They come from the rig's truth in the recording, after the session has ended.
+/// Adds to each trial the share of force that was cancelled, the delay of the counterforce, the
+/// forces and the causes of what is left.  They come from the rig's truth in the recording, after
+/// the session has ended.
+/// @param answers  none: no causes
 void judge_cancellation(const std::filesystem::path& recording,
-                        const std::vector<session::TrialOutcome>& outcomes, LoopResult& result);
+                        const std::vector<session::TrialOutcome>& outcomes,
+                        const std::optional<session::AnswerConfigs>& answers, LoopResult& result);
 
 }  // namespace stillhand::close_the_loop

@@ -8,6 +8,7 @@
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/report/plot/figure_table.hpp"
 #include "apps/libraries/report/text.hpp"
+#include "apps/libraries/session/force_budget_json.hpp"
 #include "apps/libraries/session/numbers_json.hpp"
 #include "services/files/rig/sealed_file.hpp"
 #include "version.hpp"
@@ -237,6 +238,9 @@ std::string summary_json(const LoopRecord& record) {
   for (std::size_t i = 0; i < result.rounds.size(); ++i) {
     const bool kept = record.decision.kept() && i == result.final_round;
     summary["rounds"].push_back(round_json(result.rounds[i], kept));
+  }
+  for (const TrialRun* trial : cancelling_trials(result)) {
+    summary["lateness"][trial->label] = session::budget_json(trial->budget);
   }
   summary["kept"] = record.decision.kept();
   summary["decided_on"] = "motor";

@@ -72,6 +72,8 @@ std::string with_interval(const Estimate& estimate, int decimals, double factor 
 /// Every number of each condition, and what each restores of the paper's metrics.
 report::Table measures_table(const Conditions& conditions);
 report::Table restoration_table(const Conditions& conditions);
+/// What C, C' and C+ leave, by cause (session, SN-8); none where a trial has no budget.
+std::optional<report::Table> causes_table(const LoopResult& result);
 
 /// report.html with its figures.
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings);

@@ -165,6 +165,30 @@ report::Table restoration_table(const Conditions& conditions) {
   return table;
 }
 
+std::optional<report::Table> causes_table(const LoopResult& result) {
+  report::Table table{
+      "RMS of the feedthrough force that is left [N], by its causes, which add up to it; in "
+      "brackets 95 %. One trial each.",
+      {""}};
+  for (const session::ForceCause& cause : session::kForceCauses) {
+    table.rows.push_back({cause.meaning});
+  }
+  table.rows.push_back({"all"});
+  const auto add = [&table](std::size_t row, const session::ForceEstimate& each) {
+    table.rows[row].emplace_back(number(each.force_n, 2) + " (" + number(each.low_n, 2) + " to " +
+                                 number(each.high_n, 2) + ")");
+  };
+  for (const TrialRun* trial : cancelling_trials(result)) {
+    if (!trial->budget) return {};
+    table.header.emplace_back(trial->label);
+    for (std::size_t i = 0; i < session::kForceCauses.size(); ++i) {
+      add(i, (*trial->budget).*session::kForceCauses[i].of);
+    }
+    add(session::kForceCauses.size(), trial->budget->left);
+  }
+  return table;
+}
+
 report::Table treatment_table(const ConvertedModel& control, bool used) {
   report::Table table;
   table.caption = "What the canceller does about each effect";
@@ -190,6 +214,7 @@ report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawi
        {"repeats", std::to_string(record.conditions.at("A").size())},
        {"made by", report::made_by()}});
   add_tracking(page, record.conditions, drawings);
+  if (const auto causes = causes_table(result)) page.table(*causes);
   add_verdict(page, result, drawings);
   page.section("The rounds");
   page.table(rounds_table(result));

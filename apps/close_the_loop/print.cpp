@@ -12,6 +12,9 @@ void print_result(const LoopRecord& record) {
   const LoopResult& result = record.result;
   fmt::print("\n{}\n{}", report::in_plain_text(measures_table(record.conditions)),
              report::in_plain_text(restoration_table(record.conditions)));
+  if (const auto causes = causes_table(result)) {
+    fmt::print("{}\n", report::in_plain_text(*causes));
+  }
   const Verdict& verdict = result.verdict();
   if (verdict.strongest() == nullptr) {
     fmt::print("{}\n", without_effect(verdict, verdict.body.options.least_force_n));

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/libraries/session/core/trial_numbers.hpp"
+#include "apps/libraries/session/force_budget.hpp"
 #include "apps/libraries/session/in_process.hpp"
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/cancellation/parts/adaptive_gain.hpp"
@@ -23,7 +25,8 @@ struct TrialRun : session::TrialNumbers {
   std::int64_t number = 0;  ///< of the trial in its session
   recording::Recording measured;
   std::vector<cancellation::AdaptiveGain::Pair>
-      weights;  ///< w_0, w_1 as adapted, at kWeightRate_hz
+      weights;                                      ///< w_0, w_1 as adapted, at kWeightRate_hz
+  std::optional<session::ForceBudget> budget = {};  ///< of a live trial with cancellation
 };
 
 /// A session as the loop needs it, in one process or over DDS.

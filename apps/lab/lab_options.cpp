@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/lab_options.hpp"
 
+#include "services/core/contract/config_error.hpp"
+#include "services/core/rig/rig.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/system/process/remark.hpp"
 #include "services/system/process/shipped.hpp"
 
 namespace stillhand::lab {
@@ -18,6 +21,17 @@ cancellation::Config canceller_config(const LabOptions& options) {
   // As the process does: without the word its settings hold.
   if (options.canceller != "now") config.sampling = cancellation::sampling_named(options.canceller);
   return config;
+}
+
+std::optional<session::AnswerConfigs> answers_of(const LabOptions& options) try {
+  if (!options.devices.empty()) return std::nullopt;
+  const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");
+  return session::AnswerConfigs{
+      settings::load<sensing::Config>(options.config / "sensing.yaml", "sensing"),
+      canceller_config(options), rig.motor, rig.stick.lever_m};
+} catch (const ConfigError& error) {
+  runtime::remark(std::string("what C leaves is not split into causes: ") + error.what());
+  return std::nullopt;
 }
 
 }  // namespace stillhand::lab

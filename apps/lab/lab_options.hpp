@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/libraries/session/on_time.hpp"
 #include "apps/libraries/session/protocol.hpp"
 #include "services/bus/recording/keep_options.hpp"
 #include "services/bus/recording/of_experiment.hpp"
@@ -58,5 +59,10 @@ void set_places(LabOptions& options);
 /// Settings of the process of cancellation in this session.
 /// @throws ConfigError when their file is wrong.
 cancellation::Config canceller_config(const LabOptions& options);
+
+/// Settings of what lies between a raw sample and the motor's force.  None with a rig of devices,
+/// of which nobody knows the feedthrough; nor where a file is wrong by now, which a line says: it
+/// must not cost a session its results.
+std::optional<session::AnswerConfigs> answers_of(const LabOptions& options);
 
 }  // namespace stillhand::lab

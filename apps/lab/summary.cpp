@@ -127,19 +127,6 @@ void draw(const LabOptions& options, const std::vector<session::TrialOutcome>& o
   }
 }
 
-// Nothing where nobody knows the feedthrough.  What stands in a file now must not cost the session
-// its results.
-std::optional<session::AnswerConfigs> answers_of(const LabOptions& options) try {
-  if (!options.devices.empty()) return std::nullopt;
-  const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");
-  return session::AnswerConfigs{
-      settings::load<sensing::Config>(options.config / "sensing.yaml", "sensing"),
-      canceller_config(options), rig.motor, rig.stick.lever_m};
-} catch (const ConfigError& error) {
-  runtime::remark(std::string("what C leaves is not split into causes: ") + error.what());
-  return std::nullopt;
-}
-
 }  // namespace
 
 int report_session(const LabOptions& options, std::vector<session::TrialOutcome> outcomes,

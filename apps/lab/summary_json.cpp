@@ -9,6 +9,7 @@
 #include <set>
 
 #include "apps/libraries/report/or_null.hpp"
+#include "apps/libraries/session/force_budget_json.hpp"
 #include "apps/libraries/session/misses_json.hpp"
 #include "apps/libraries/session/numbers_json.hpp"
 #include "services/core/device_rig/parts.hpp"
@@ -78,16 +79,7 @@ ordered_json disturbed_json(const session::SessionResult& result, std::int64_t t
 // null: no motor cancels, or nobody knows the feedthrough.
 ordered_json lateness_json(const session::SessionResult& result, std::int64_t number) {
   const auto trial = std::ranges::find(result.trials, number, &session::TrialResult::number);
-  if (trial == result.trials.end() || !trial->budget) return nullptr;
-  const auto estimate = [](const session::ForceEstimate& each) -> ordered_json {
-    return {{"force_n", or_null(each.force_n)},
-            {"interval95", {or_null(each.low_n), or_null(each.high_n)}}};
-  };
-  ordered_json json{{"left", estimate(trial->budget->left)}};
-  for (const session::ForceCause& cause : session::kForceCauses) {
-    json[cause.key] = estimate((*trial->budget).*cause.of);
-  }
-  return json;
+  return trial == result.trials.end() ? nullptr : session::budget_json(trial->budget);
 }
 
 ordered_json restoration_json(const session::SessionResult& result, session::Condition label) {

@@ -63,6 +63,11 @@ class CloseTheLoopLiveTest(unittest.TestCase):
         left = {name: condition["force_left_n"]["mean"] for name, condition in summary["conditions"].items()}
         self.assertLess(left["C+"], left["B"])
         self.assertIsNone(summary["conditions"]["C'"]["force_left_n"]["interval95"])
+        for name in ("C", "C'", "C+") if trial_s >= 12 else ():
+            causes = dict(summary["lateness"][name])
+            whole = causes.pop("left")["force_n"]
+            self.assertAlmostEqual(sum(cause["force_n"] for cause in causes.values()), whole, places=6)
+            self.assertAlmostEqual(whole, left[name], delta=0.1 * whole)
         checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
                                  capture_output=True, text=True)
         self.assertEqual(checked.returncode, 0, checked.stderr)

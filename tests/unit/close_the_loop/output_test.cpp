@@ -101,6 +101,23 @@ TEST(OutputTest, TheSummaryHasEveryConditionAndItsRestoration) {
   EXPECT_EQ(sut["identification"]["order"], 1);
 }
 
+TEST(OutputTest, WhatIsLeftHasItsCausesWhereEveryTrialKnowsThem) {
+  LoopRecord record = loop_record();
+  session::ForceBudget budget;
+  budget.left = {2.0, 1.5, 2.5};
+  budget.lateness = {0.25, 0.125, 0.375};
+  for (TrialRun& trial : record.result.trials) trial.budget = budget;
+  EXPECT_FALSE(causes_table(record.result));  // C+ has none
+  EXPECT_TRUE(summary_of(record)["lateness"]["C+"].is_null());
+  EXPECT_EQ(summary_of(record)["lateness"]["C"]["lateness"]["force_n"], 0.25);
+  record.result.rounds[0].trial.budget = budget;
+  const auto sut = causes_table(record.result);
+  ASSERT_TRUE(sut);
+  EXPECT_EQ(sut->header.size(), 4u);
+  EXPECT_EQ(sut->rows.at(1).at(3).text, "0.25 (0.12 to 0.38)");
+  EXPECT_EQ(sut->rows.back().at(1).text, "2.00 (1.50 to 2.50)");
+}
+
 // A and B run with the motor off.
 TEST(OutputTest, OnlyTrialsThatCancelHaveAShareAndADelay) {
   const json sut = summary_of(loop_record())["conditions"];
