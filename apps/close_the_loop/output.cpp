@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/close_the_loop/output.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -293,14 +295,15 @@ std::string kept_text(const LoopRecord& record) {
   if (!decision.augmented) return {};
   const int decimals = decision.measure->decimals + 1;
   const std::size_t repeats = record.conditions.at("A").size();
-  return std::string("C+ is ") + (decision.kept() ? "kept" : "not kept") + ": over " +
-         std::to_string(repeats) + (repeats == 1 ? " repeat" : " repeats") +
-         " that no fit has seen, its " + decision.measure->title + " changes by " +
-         with_interval(decision.over_c, decimals) + " from C and, from C', by " +
-         with_interval(decision.over_c_prime, decimals) +
-         (decision.certain() ? ", and both intervals exclude 0"
-                             : ", as far as these repeats show") +
-         ". The canceller gets the model of " + decision.model_of + ".";
+  return fmt::format(
+      "C+ is {}: over {} repeat{} that no fit has seen, C+ less C is {} and C+ less C' is {} in "
+      "{}{}. "
+      "The canceller gets the model of {}.",
+      decision.kept() ? "kept" : "not kept", repeats, repeats == 1 ? "" : "s",
+      with_interval(decision.over_c, decimals), with_interval(decision.over_c_prime, decimals),
+      decision.measure->title,
+      decision.certain() ? ", and both intervals exclude 0" : ", as far as these repeats show",
+      decision.model_of);
 }
 
 std::string with_interval(const Estimate& estimate, int decimals, double factor) {
