@@ -17,8 +17,8 @@ of the least possible error. Sets of pairs: a generator's (fresh_bodies.py), rec
 (default: shared/data next to the checkout; measured or made elsewhere, no part of the project), planted_recordings.
 
     STILLHAND_BUILD=build python3 tests/benchmark/carried_chain.py --fresh 60 --seed 1 --json new.json
-    STILLHAND_BUILD=build python3 tests/benchmark/carried_chain.py --field --benchmarks --planted 18 --json others.json
-    python3 tests/benchmark/carried_chain.py --compare old.json new.json --picture carried.png
+    STILLHAND_BUILD=build python3 tests/benchmark/carried_chain.py --field --planted 18 --json others.json
+    python3 tests/benchmark/carried_chain.py --compare old.json new.json
 
 --keep DIR holds every file, and a step whose files are there is not run again. Exit status: 0; 1 where a carried model
 is more than 5 % worse than the linear one on an unseen record; 77 where no recording is to be had.
@@ -35,7 +35,7 @@ import tempfile
 
 import numpy
 
-from carried_pairs import BUILD, SKIPPED, benchmarks, column, field, folder_of_pairs, fresh, planted
+from carried_pairs import BUILD, SKIPPED, column, field, folder_of_pairs, fresh, planted
 from carried_table import WORST, compare, print_table, ratio
 
 STEPS = ("diagnose", "predict", "export", "motor")
@@ -66,8 +66,6 @@ class Chain:
         self.pair, self.folder = pair, folder
         self.errors = {}
         self.titles = ["--map", *pair.titles] if pair.titles else []
-        self.roles = [word for flag, value in (("--input", pair.input), ("--output", pair.output)) if value
-                      for word in (flag, value)]
         folder.mkdir(parents=True, exist_ok=True)
 
     def step(self, name, words, made):
@@ -83,15 +81,14 @@ class Chain:
 
     def diagnose(self):
         verdict = self.folder / "verdict.json"
-        done = self.step("diagnose", ["diagnose", self.pair.train, *self.roles, *self.pair.options, *self.titles,
-                                      "--save", self.folder / "model.json", "--json", verdict], verdict)
+        words = ["diagnose", self.pair.train, *self.titles, "--save"]
+        done = self.step("diagnose", [*words, self.folder / "model.json", "--json", verdict], verdict)
         linear = self.folder / "linear.json"
         found = (read(verdict) or {}).get("effects")
         if found == [] and not linear.is_file():  # it is the linear model
             shutil.copy(self.folder / "model.json", linear)
         if found != []:
-            self.step("linear", ["diagnose", self.pair.train, *self.roles, *self.pair.options, *self.titles, "--most-effects",
-                                 0, "--save", linear], linear)
+            self.step("linear", [*words, linear, "--most-effects", 0], linear)
         verdict = read(verdict)
         if verdict is None:
             return {}
@@ -109,9 +106,9 @@ class Chain:
         done = self.step(f"predict_{name}", ["predict", model, self.pair.test, *self.titles, "--out", out], out)
         if not out.is_file():
             return None, []
-        time, measured = column(self.pair.test, self.pair.output or "f")
+        time, measured = column(self.pair.test, "f")
         # A jittered record is predicted on a grid.
-        predicted = numpy.interp(time, *column(out, f"{self.pair.output or 'f'}_model"))
+        predicted = numpy.interp(time, *column(out, "f_model"))
         notes = [line[len("note: "):] for line in done["out"].splitlines() if line.startswith("note: ")]
         return self.pair.rms(time, measured - predicted), notes
 
@@ -123,24 +120,13 @@ class Chain:
 
     def export(self):
         out, table = self.folder / "control.json", self.folder / "export.json"
-        words = ["control-model", self.folder / "model.json", self.pair.train, *self.titles, "--save", out]
-        if "--json" in self.help_of("control-model"):
-            words += ["--json", table]
-        done = self.step("export", words, out)
-        treatments = (read(table) or {}).get("treatments")
-        if treatments is None:  # an older program prints them only
-            said = [line.split(": ", 1) for line in done["out"].splitlines() if re.match(r"[a-z_]+: ", line)]
-            treatments = [{"kind": kind, "cancelled": how.startswith("cancelled"), "how": how, "difference_percent": None}
-                          for kind, how in said]
-        return {"export": treatments}
-
-    @staticmethod
-    def help_of(verb):
-        return subprocess.run([str(BUILD / "bin" / "stillhand"), verb, "--help"], capture_output=True, text=True).stdout
+        self.step("export", ["control-model", self.folder / "model.json", self.pair.train, *self.titles, "--save", out,
+                             "--json", table], out)
+        return {"export": (read(table) or {}).get("treatments")}
 
     def motor(self):
         out = self.folder / "loop"
-        self.step("motor", ["close-the-loop", "--pegged", self.pair.train, "--unseen", self.pair.test, *self.roles,
+        self.step("motor", ["close-the-loop", "--pegged", self.pair.train, "--unseen", self.pair.test,
                             *self.titles, "--threads", 1, "--out", out], out / "summary.json")
         summary = read(out / "summary.json")
         if not summary:
@@ -189,24 +175,21 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="of --fresh and --planted")
     parser.add_argument("--pairs", type=pathlib.Path, metavar="DIR", help="pairs that fresh_bodies.py has written")
     parser.add_argument("--field", nargs="?", const="", metavar="DIR", help="pairs in DIR or STILLHAND_DATA/field")
-    parser.add_argument("--benchmarks", action="store_true", help="public sets in STILLHAND_DATA")
     parser.add_argument("--planted", type=int, default=0, metavar="N", help="pairs of planted_recordings, kinds in turn")
     parser.add_argument("--only", help="regular expression of names")
     parser.add_argument("--steps", default=",".join(STEPS))
     parser.add_argument("--json", type=pathlib.Path, help="the rows")
     parser.add_argument("--keep", type=pathlib.Path, metavar="DIR")
     parser.add_argument("--compare", nargs=2, type=pathlib.Path, metavar="JSON", help="rows of an old and a new program")
-    parser.add_argument("--picture", type=pathlib.Path, help="PNG: gain and harm of --compare, or of this run")
     words = parser.parse_args()
     if words.compare:
-        compare([read(path) for path in words.compare], words.picture)
+        compare(*(read(path) for path in words.compare))
         return 0
     with tempfile.TemporaryDirectory() as holder:
         folder = words.keep or pathlib.Path(holder)
         pairs = [*(fresh(folder / "fresh", words.fresh, words.seed) if words.fresh else []),
                  *(folder_of_pairs(words.pairs) if words.pairs else []),
                  *(field(words.field) if words.field is not None else []),
-                 *(benchmarks() if words.benchmarks else []),
                  *(planted(folder / "planted", words.planted, words.seed) if words.planted else [])]
         pairs = [pair for pair in pairs if re.search(words.only or "", pair.name)]
         if not pairs:
@@ -219,8 +202,6 @@ def main():
             if words.json:  # after each pair: a run that is stopped keeps what it has
                 words.json.write_text(json.dumps(rows, indent=1) + "\n")
     print_table(rows)
-    if words.picture:
-        compare([rows], words.picture)
     return int(any((ratio(row) or 0.0) > WORST for row in rows))
 
 

@@ -40,11 +40,7 @@ class Pair:
     known_least: typing.Optional[float] = None
     best_linear: typing.Optional[float] = None  # error of a long response on the unseen record
     edge_hz: typing.Optional[float] = None  # low-pass of every error on the unseen record, as that of known_least
-    input: typing.Optional[str] = None
-    output: typing.Optional[str] = None
-    left_out: int = 0  # first rows of the unseen record that do not count
     settle_s: float = 2.0  # a free run does not know the state at the start
-    options: tuple = ()
     titles: tuple = ()  # --map of every verb
     too_small: bool = False  # a linear model does as well within 1 %: nothing named is right
 
@@ -63,8 +59,7 @@ class Pair:
             time, error = grid, numpy.interp(grid, time, error)
             low = scipy.signal.butter(4, self.edge_hz, fs=100.0, output="sos")
             error = scipy.signal.sosfiltfilt(low, error)
-        rows = (numpy.arange(time.size) >= self.left_out) & (time - time[0] >= self.settle_s)
-        return float(numpy.sqrt(numpy.mean(error[rows] ** 2)))
+        return float(numpy.sqrt(numpy.mean(error[time - time[0] >= self.settle_s] ** 2)))
 
 
 def folder_of_pairs(folder):
@@ -107,26 +102,6 @@ def field(folder):
             {"kind": "path of a_x", "right": [["coupled_input", "a_x"]]}]
         pairs.append(Pair(name, folder / (name + ends[0]), folder / (name + ends[1]), truth, known_least=least,
                           edge_hz=least and 10.0, titles=TITLES if name == "arm_friction_ride" else ()))
-    return [pair for pair in pairs if pair.train.is_file()]
-
-
-def benchmarks():
-    """First rows left out as the publishers do; for the treadmill slow is judged with the model of fast."""
-    sets = DATA / "benchmarks"
-    public = {"tanks": ("u", "y", 5), "emps_forward": ("u", "y", 20), "wiener_hammerstein": ("u", "y", 50),
-              "ced_prbs1": ("u", "y", 4), "ced_prbs2": ("u", "y", 4), "ced_prbs3": ("u", "y", 4), "heating": ("u", "y", 5),
-              "hydraulic_actuator": ("u", "p", 10), "ball_and_beam": ("angle", "x", 5)}
-    pairs = [Pair(name, sets / f"{name}_train.csv", sets / f"{name}_test.csv", input=u, output=y, left_out=skip, settle_s=0.0)
-             for name, (u, y, skip) in public.items()]
-
-    def own(name, train, test, u, y, skip, *options):
-        return Pair(name, DATA / f"{train}.csv", DATA / f"{test}.csv", input=u, output=y, left_out=skip, settle_s=0.0,
-                    options=options)
-    pairs += [own("emps", "emps_estimation", "emps_validation", "acceleration,velocity", "motor_force", 0, "--model", "linear"),
-              own("silverbox_test", "silverbox_train", "silverbox_test", "u", "y", 50, "--model", "arx"),
-              own("silverbox_arrow", "silverbox_train", "silverbox_arrow", "u", "y", 50, "--model", "arx"),
-              own("treadmill_fast_to_slow", "treadmill_fast1", "treadmill_slow1", "belt_acceleration", "pitch_moment", 200),
-              own("treadmill_slow_to_fast", "treadmill_slow1", "treadmill_fast1", "belt_acceleration", "pitch_moment", 200)]
     return [pair for pair in pairs if pair.train.is_file()]
 
 

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Table, summary and picture of the rows of carried_chain.py."""
-import pathlib
-import subprocess
-import tempfile
-
+"""Table and summary of the rows of carried_chain.py."""
 import numpy
 
 WORST = 1.05
@@ -95,41 +91,9 @@ def print_summary(rows):
         print(f"diagnose, user time: {numpy.median(seconds):.1f} s in the median, {max(seconds):.1f} s at most")
 
 
-def compare(sets, picture):
-    """Summary of each set on the records that all have, and both distributions on one picture."""
-    common = set.intersection(*({row["record"] for row in rows} for rows in sets))
-    names = ("old rule", "new rule") if len(sets) == 2 else ("this run",)
-    sets = [[row for row in rows if row["record"] in common] for rows in sets]
-    if len(sets) == 2:
-        for name, rows in zip(names, sets):
-            print(f"{name}:")
-            print_summary(rows)
-    if picture:
-        draw(dict(zip(names, sets)), picture)
-
-
-def draw(sets, picture):
-    """Cumulated share of the records: what was carried of what could go, and the error over the linear one's."""
-    gain, harm = [], []
-    with tempfile.TemporaryDirectory() as holder:
-        for index, (name, rows) in enumerate(sets.items()):
-            for plots, values in ((gain, [share(row) for row in rows if row["named"] in ("all", "part")]),
-                                  (harm, [ratio(row) for row in rows])):
-                values = sorted(value for value in values if value is not None)
-                if not values:
-                    continue
-                path = pathlib.Path(holder) / f"{index}_{len(gain)}_{len(harm)}"
-                numpy.savetxt(path, [(value, 100.0 * (i + 1) / len(values)) for i, value in enumerate(values)])
-                colour = ("#b2182b", "#2166ac")[index]
-                plots.append(f"'{path}' with fsteps lw 2 lc rgb '{colour}' title '{name} ({len(values)})'")
-        script = pathlib.Path(holder) / "carried.gnuplot"
-        script.write_text("\n".join((
-            "set terminal pngcairo size 1500,560 font 'sans,13'", f"set output '{picture}'", "set multiplot layout 1,2",
-            "set grid lc rgb '#dddddd'", "set yrange [0:100]", "set key top left", "set ylabel 'records, cumulated [%]'",
-            "set xrange [-0.5:1.3]", "set xlabel 'share of what could go that the carried model takes'",
-            "set arrow 1 from 0.8,0 to 0.8,100 nohead dt 2", "set title 'Gain, rightly named records'",
-            "plot " + (", ".join(gain) or "NaN notitle"), "unset arrow 1", "set xrange [0.4:1.4]",
-            "set xlabel 'unseen error of the carried model over that of the linear one'",
-            "set arrow 2 from 1.05,0 to 1.05,100 nohead dt 2", "set title 'Harm, all records'",
-            "plot " + (", ".join(harm) or "NaN notitle"), "unset multiplot", "")))
-        subprocess.run(["gnuplot", str(script)], check=True)
+def compare(old, new):
+    """Summary of two programs on the records that both have."""
+    common = {row["record"] for row in old} & {row["record"] for row in new}
+    for name, rows in (("old", old), ("new", new)):
+        print(f"{name}:")
+        print_summary([row for row in rows if row["record"] in common])

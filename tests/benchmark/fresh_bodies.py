@@ -9,12 +9,10 @@ records one has no effect; of the others every second one's first effect is of a
 determined by the seed and its number.
 
     python3 tests/benchmark/fresh_bodies.py --count 60 --seed 1 --out DIR      # about 10 s of a processor a record
-    python3 tests/benchmark/fresh_bodies.py --count 4 --seed 1 --out DIR --picture DIR/first.png
 """
 import argparse
 import json
 import pathlib
-import subprocess
 import sys
 
 import numpy
@@ -232,28 +230,11 @@ def write_csv(path, table):
     numpy.savetxt(path, numpy.column_stack(list(table.values())), delimiter=",", header=titles, comments="", fmt="%.7g")
 
 
-def picture(record, path):
-    """Ten seconds of the test's force, the part that the inputs determine, the effects' part and the involuntary force."""
-    start = int((LEAD_S + 20) * RATE_HZ)
-    part = slice(start, start + 10 * RATE_HZ, 20)
-    lines = [record.rides[1].t[part], record.measured[1][part], record.free[1][part],
-             record.measured[1][part] - record.free[1][part]] + [record.free[1][part] - f[part] for f in record.without]
-    names = ["measured", "determined", "involuntary"] + [effect.kind for effect in record.effects]
-    values = path.with_suffix(".dat")
-    numpy.savetxt(values, numpy.column_stack(lines))
-    plots = ", ".join(f"'{values}' using 1:{i + 2} with lines title '{name.replace('_', ' ')}'" for i, name in enumerate(names))
-    script = ["set terminal pngcairo size 1200,500", f"set output '{path}'", "set key outside", "set xlabel 't [s]'",
-              "set ylabel 'f [N]'", f"plot {plots}", ""]
-    subprocess.run(["gnuplot"], input="\n".join(script), text=True, check=True)
-    values.unlink()
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, required=True)
-    parser.add_argument("--picture", type=pathlib.Path, help="PNG of each record, its number appended")
     words = parser.parse_args()
     words.out.mkdir(parents=True, exist_ok=True)
     deck = numpy.random.default_rng([words.seed, 1 << 20])
@@ -262,8 +243,6 @@ def main():
     for number in range(words.count):
         record = Record(words.seed, number, known, outside)
         record.write(words.out)
-        if words.picture:
-            picture(record, words.picture.with_name(f"{words.picture.stem}_{number + 1:04d}.png"))
         print(f"rec_{number + 1:04d}: {', '.join(effect.kind for effect in record.effects) or 'no effect'}", flush=True)
 
 

@@ -11,9 +11,6 @@ exit status is 1 where a model with effects is more than 5 % worse than the line
     STILLHAND_BUILD=build python3 tests/benchmark/no_harm.py --kinds drift,tone --seed 7 --verbose
 """
 import argparse
-import csv
-import json
-import os
 import pathlib
 import subprocess
 import sys
@@ -21,9 +18,10 @@ import tempfile
 
 import numpy
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
-WORST = 1.05
+from carried_chain import Chain
+from carried_pairs import BUILD, Pair
+from carried_table import WORST, ratio
+
 KINDS = ("delay", "resonance", "coupled_input", "coulomb_friction", "nonlinear_stiffness", "asymmetry", "hysteresis",
          "dead_zone", "output_saturation", "input_saturation", "position_ripple", "tone", "drift", "time_varying_gain",
          "regime_change", "clock_drift", "bilinear", "transients", "none")
@@ -42,13 +40,6 @@ SHORT = (("drift", 0), ("clock_drift", 4), ("transients", 2))
 JITTER_ROWS = 5  # a jittered recording takes one of five rows
 
 
-def run(*words):
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"no_harm: {' '.join(str(word) for word in words)}\n{done.stderr.strip()}")
-    return done.stdout
-
-
 def jittered(path, random):
     """Every fifth row, or the one before or after it."""
     rows = path.read_text().splitlines()
@@ -64,64 +55,43 @@ def planted(folder, kind, condition, seed):
     for name in ("again_length", "again_rate"):
         if name in condition:
             words += ["--" + name.replace("_", "-"), condition[name]]
-    run(BUILD / "tests" / "planted_recordings", "--out", folder, "--count", 1, "--twice", *words,
-        *(["--gaps"] if condition.get("gaps") else []))
+    words += ["--gaps"] if condition.get("gaps") else []
+    subprocess.run([BUILD / "tests" / "planted_recordings", "--out", folder, "--count", "1", "--twice", *map(str, words)],
+                   check=True, stdout=subprocess.DEVNULL)
     pair = folder / "rec_0001.csv", folder / "rec_0001.again.csv"
     if condition.get("jitter"):
         random = numpy.random.default_rng(seed)
         for path in pair:
             jittered(path, random)
-    return pair
+    return Pair(kind, *pair, settle_s=0.0)
 
 
-def column(path, name):
-    with open(path, newline="") as file:
-        rows = csv.reader(file)
-        titles = [title.split(" [")[0] for title in next(rows)]
-        at, time = titles.index(name), titles.index("t")
-        values = numpy.array([(row[time], row[at]) for row in rows], dtype=float)
-    return values[:, 0], values[:, 1]
+def judged(kind, which, seed):
+    """A row of carried_chain.py."""
+    with tempfile.TemporaryDirectory() as holder:
+        folder = pathlib.Path(holder)
+        row = Chain(planted(folder, kind, CONDITIONS[which], seed), folder / "chain").row(("diagnose", "predict"))
+    return row | {"case": f"{kind} condition {which} seed {seed}", "ratio": ratio(row)}
 
 
-def error_of(model, unseen, folder):
-    """Root mean square of measured - predicted, and what predict noted."""
-    out = folder / "prediction.csv"
-    said = run(BUILD / "bin" / "stillhand", "predict", model, unseen, "--out", out)
-    time, predicted = column(out, "f_model")
-    # A jittered recording is predicted on a grid.
-    measured = numpy.interp(time, *column(unseen, "f"))
-    notes = [line[len("note: "):] for line in said.splitlines() if line.startswith("note: ")]
-    return float(numpy.sqrt(numpy.mean((measured - predicted) ** 2))), notes
+def line(row):
+    if row["errors"]:
+        return f"{row['case']}: {row['errors']}"
+    found = [effect["kind"] for effect in row["effects"]] or "nothing"
+    return f"{row['case']}: found {found}, {row['unseen_linear']:.4g} -> {row['unseen_carried']:.4g} N ({row['ratio']:.3f})"
 
 
-class Pair:
-    def __init__(self, kind, which, seed):
-        self.kind, self.which, self.seed = kind, which, seed
-        with tempfile.TemporaryDirectory() as holder:
-            folder = pathlib.Path(holder)
-            seen, unseen = planted(folder, kind, CONDITIONS[which], seed)
-            stillhand, out = BUILD / "bin" / "stillhand", folder / "out.json"
-            run(stillhand, "diagnose", seen, "--save", folder / "after.json", "--json", out)
-            run(stillhand, "diagnose", seen, "--save", folder / "before.json", "--most-effects", 0)
-            self.found = [effect["kind"] for effect in json.loads(out.read_text())["effects"]]
-            self.before, _ = error_of(folder / "before.json", unseen, folder)
-            self.after, self.notes = error_of(folder / "after.json", unseen, folder)
-        self.ratio = self.after / self.before
-
-    def __str__(self):
-        return (f"{self.kind} condition {self.which} seed {self.seed}: found {self.found or 'nothing'}, "
-                f"{self.before:.4g} -> {self.after:.4g} N ({self.ratio:.3f})")
-
-
-def print_table(pairs):
+def print_table(rows):
+    rows = [row for row in rows if row["ratio"] is not None]
     print("| planted | pairs | before, median [N] | after, median [N] | ratio, median | worst |\n| --- | --- | --- | --- | --- | --- |")
-    for kind in dict.fromkeys(pair.kind for pair in pairs):
-        own = [pair for pair in pairs if pair.kind == kind]
-        before, after, ratio = (numpy.median([getattr(pair, name) for pair in own]) for name in ("before", "after", "ratio"))
-        print(f"| {kind} | {len(own)} | {before:.3f} | {after:.3f} | {ratio:.3f} | {max(pair.ratio for pair in own):.3f} |")
-    ratios = [pair.ratio for pair in pairs]
-    print(f"{len(pairs)} pairs: ratio {numpy.median(ratios):.3f} in the median, {max(ratios):.3f} at worst; "
-          f"{sum(ratio > WORST for ratio in ratios)} above {WORST}")
+    for kind in dict.fromkeys(row["record"] for row in rows):
+        own = [row for row in rows if row["record"] == kind]
+        before, after, middle = (numpy.median([row[name] for row in own])
+                                 for name in ("unseen_linear", "unseen_carried", "ratio"))
+        print(f"| {kind} | {len(own)} | {before:.3f} | {after:.3f} | {middle:.3f} | {max(row['ratio'] for row in own):.3f} |")
+    ratios = [row["ratio"] for row in rows]
+    print(f"{len(rows)} pairs: ratio {numpy.median(ratios):.3f} in the median, {max(ratios):.3f} at worst; "
+          f"{sum(each > WORST for each in ratios)} above {WORST}")
 
 
 def main():
@@ -134,15 +104,15 @@ def main():
     words = parser.parse_args()
     cases = SHORT if words.short else [(kind, int(which)) for kind in words.kinds.split(",")
                                        for which in words.conditions.split(",")]
-    pairs = []
+    rows = []
     for number, (kind, which) in enumerate(cases):
-        pairs.append(Pair(kind, which, 1000 * words.seed + number))
+        rows.append(judged(kind, which, 1000 * words.seed + number))
         if words.verbose:
-            print(pairs[-1], *pairs[-1].notes, sep="\n    ", flush=True)
-    print_table(pairs)
-    worse = [pair for pair in pairs if not pair.ratio <= WORST]
-    for pair in worse:
-        print(f"no_harm: worse than the linear model: {pair}", file=sys.stderr)
+            print(line(rows[-1]), *rows[-1].get("notes", ()), sep="\n    ", flush=True)
+    print_table(rows)
+    worse = [row for row in rows if row["ratio"] is None or not row["ratio"] <= WORST]
+    for row in worse:
+        print(f"no_harm: worse than the linear model: {line(row)}", file=sys.stderr)
     sys.exit(1 if worse else 0)
 
 

@@ -3,7 +3,7 @@
 // Plants effects of any size under five noises, none of them drawn again, and writes a row for each
 // recording: what was planted, how large it is next to the noise, what the engine says.
 //   build/tests/power_curves --out rows.csv --count 8 --none 400 --seed 1
-// power_curves.py runs it, fits the curves and draws them.
+// power_curves.py runs it and fits the curves.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>

@@ -9,8 +9,7 @@ logistic curves are fitted to the answers, "something was found" and "the right 
     ln(P / (1 - P)) = a_kind + c_noise + b_noise ln(size)
 
 Printed are the false alarms by noise, the size at which each kind is found in half and in nine of ten recordings of
-white noise, and how much larger it has to be under the other noises. --picture draws the curves with the shares of the
-recordings, pooled over the kinds.
+white noise, and how much larger it has to be under the other noises.
 
     STILLHAND_BUILD=build python3 tests/benchmark/power_curves.py                # 720 and 2,000: two hours on two cores
     STILLHAND_BUILD=build python3 tests/benchmark/power_curves.py --rows FILE    # of an earlier run
@@ -29,7 +28,6 @@ import numpy
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
 RIDGE = 0.05  # a kind that is always found has no curve of its own: pulled to the common one
-BINS = numpy.geomspace(0.01, 10.0, 13)
 
 
 def rows_of(path):
@@ -69,16 +67,10 @@ class Curves:
         of_noise = [float(noise == each) for each in self.noises]
         return [1.0, log, *(float(kind == each) for each in self.kinds), *of_noise, *(log * each for each in of_noise)]
 
-    def probability(self, kind, noise, size):
-        return 1.0 / (1.0 + math.exp(-float(numpy.dot(self.columns(kind, noise, size), self.numbers))))
-
     def size_at(self, share, kind, noise):
         level = float(numpy.dot(self.columns(kind, noise, 1.0), self.numbers))
         slope = float(numpy.dot(self.columns(kind, noise, math.e), self.numbers)) - level
         return math.exp((math.log(share / (1.0 - share)) - level) / slope)
-
-    def pooled(self, noise, size):
-        return sum(self.probability(kind, noise, size) for kind in self.kinds) / len(self.kinds)
 
 
 def wilson(count, of):
@@ -124,41 +116,6 @@ def print_sizes(rows, found, right):
               f"{ratio:.2f} | {numpy.median(limits) if limits else float('nan'):.3f} |")
 
 
-def draw(path, rows, found, right):
-    """Left: something is found. Right: and it is right."""
-    colours = ("#1b6ca8", "#d1495b", "#66a182", "#edae49", "#6a4c93")
-    with tempfile.TemporaryDirectory() as holder:
-        folder = pathlib.Path(holder)
-        plots = {"found": [], "right": []}
-        for name, curves in (("found", found), ("right", right)):
-            for index, noise in enumerate(curves.noises):
-                sizes = numpy.geomspace(BINS[0], BINS[-1], 200)
-                line, points = folder / f"{name}-{noise}.line", folder / f"{name}-{noise}.points"
-                numpy.savetxt(line, [(size, 100 * curves.pooled(noise, size)) for size in sizes])
-                table = []
-                for low, high in zip(BINS[:-1], BINS[1:]):
-                    own = [row for row in rows if row["noise"] == noise and low <= row["size_over_noise"] < high]
-                    if len(own) >= 5:
-                        count = sum(bool(row["found"]) if name == "found" else row["right"] for row in own)
-                        apart = 1.0 + 0.05 * (index - 2)  # the noises next to each other
-                        table.append((apart * math.sqrt(low * high), 100 * count / len(own),
-                                      *(100 * each for each in wilson(count, len(own)))))
-                look = f"lc rgb '{colours[index]}'"
-                plots[name].append(f"'{line}' with lines lw 2 {look} title '{noise.replace('_', '-')}'")
-                if table:
-                    numpy.savetxt(points, table)
-                    plots[name].append(f"'{points}' with yerrorbars pt 7 ps 0.6 {look} notitle")
-        script = folder / "power.gnuplot"
-        script.write_text("\n".join((
-            "set terminal pngcairo size 1500,640 font 'sans,13'", f"set output '{path}'", "set multiplot layout 1,2",
-            "set logscale x", f"set xrange [{BINS[0]}:{BINS[-1]}]", "set yrange [0:100]", "set grid lc rgb '#dddddd'",
-            "set xlabel 'what a linear model leaves of the effect, over the noise'", "set ylabel 'recordings [%]'",
-            "set key top left", "set title 'Something is found'", "plot " + ", ".join(plots["found"]),
-            "set title 'The right kind and channel, and nothing else'", "plot " + ", ".join(plots["right"]),
-            "unset multiplot", "")))
-        subprocess.run(["gnuplot", str(script)], check=True)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=8, help="recordings of each kind under each noise")
@@ -166,7 +123,6 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rows", type=pathlib.Path, help="rows of an earlier run, instead of a new one")
     parser.add_argument("--keep", type=pathlib.Path, help="keeps the rows there")
-    parser.add_argument("--picture", type=pathlib.Path, help="PNG file of the curves")
     words = parser.parse_args()
     with tempfile.TemporaryDirectory() as holder:
         path = words.rows or words.keep or pathlib.Path(holder) / "rows.csv"
@@ -186,8 +142,6 @@ def main():
     if planted:
         found, right = Curves(planted, lambda row: bool(row["found"])), Curves(planted, lambda row: row["right"])
         print_sizes(planted, found, right)
-        if words.picture:
-            draw(words.picture, planted, found, right)
     return 0
 
 
