@@ -35,8 +35,9 @@ import tempfile
 
 import numpy
 
-from carried_pairs import BUILD, SKIPPED, column, field, folder_of_pairs, fresh, planted
+from carried_pairs import column, field, folder_of_pairs, fresh, planted
 from carried_table import WORST, compare, print_table, ratio
+from recorded_data import BUILD, SKIPPED
 
 STEPS = ("diagnose", "predict", "export", "motor")
 LIMIT_S = 900

@@ -3,7 +3,6 @@
 import csv
 import dataclasses
 import json
-import os
 import pathlib
 import subprocess
 import sys
@@ -12,10 +11,8 @@ import typing
 import numpy
 import scipy.signal
 
-SKIPPED = 77
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-DATA = pathlib.Path(os.environ.get("STILLHAND_DATA", SOURCE.parent / "shared" / "data"))
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+from recorded_data import BUILD, DATA
+
 # Titles and units that recordings of others use, in SI.
 TITLES = ("Time (s)=t [s]", "Acc Y (g)=a_y [g]", "Force (lbf)=f [lbf]", "Temp=temp [degC]")  # for --map
 OTHERS = {"Time (s)": ("t", 1.0), "Force (lbf)": ("f", 4.4482216152605)}

@@ -24,12 +24,11 @@ import time
 
 import numpy
 
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", "build"))
-KINDS = ("none", "delay", "resonance", "coupled_input", "coulomb_friction", "nonlinear_stiffness", "asymmetry",
-         "hysteresis", "dead_zone", "output_saturation", "input_saturation", "position_ripple", "tone", "drift",
-         "time_varying_gain", "regime_change", "clock_drift", "bilinear", "transients")
+from no_harm import KINDS
+from recorded_data import BUILD
+
 NOISES = ("white", "low_pass", "pink", "heavy_tailed", "uneven")
-SPARE = [("theta", "rad"), ("a_x", "m/s^2"), ("a_z", "m/s^2"), ("v", "m/s"), ("T", "K")]
+SPARE = [("theta", "rad"), ("a_x", "m/s^2"), ("a_z", "m/s^2"), ("v", "m/s"), ("temp", "K")]
 
 
 def band_noise(random, count, rate_hz, highest_hz, rms):

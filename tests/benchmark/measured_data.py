@@ -9,30 +9,14 @@ without them this says so and ends with 77, "skipped").
     STILLHAND_BUILD=build python3 tests/benchmark/measured_data.py --quick    # without Silverbox; exit 1 where a figure steps back
 """
 import argparse
-import csv
 import json
-import math
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-SKIPPED = 77
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-DATA = pathlib.Path(os.environ.get("STILLHAND_DATA", SOURCE.parent / "shared" / "data"))
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+from numpy.linalg import norm
 
-
-def column(path, name):
-    with open(path, newline="") as file:
-        rows = csv.reader(file)
-        at = [title.split(" [")[0] for title in next(rows)].index(name)
-        return [float(row[at]) for row in rows]
-
-
-def norm(values):
-    return math.sqrt(sum(value * value for value in values))
+from recorded_data import DATA, column, needs, stillhand
 
 
 class Study:
@@ -43,15 +27,9 @@ class Study:
         self.model = folder / "model.json"
         self.prediction = folder / "prediction.csv"
         verdict = folder / "out.json"
-        self.stillhand("diagnose", *[DATA / f"{name}.csv" for name in recordings], "--input", inputs, "--output", output,
-                       "--save", self.model, "--json", verdict, *more)
+        stillhand("diagnose", *[DATA / f"{name}.csv" for name in recordings], "--input", inputs, "--output", output,
+                  "--save", self.model, "--json", verdict, *more)
         self.verdict = json.loads(verdict.read_text())
-
-    @staticmethod
-    def stillhand(*words):
-        run = subprocess.run([str(BUILD / "bin" / "stillhand"), *map(str, words)], capture_output=True, text=True)
-        if run.returncode:
-            sys.exit(f"measured_data: {run.stderr.strip()}")
 
     @property
     def kinds(self):
@@ -73,13 +51,12 @@ class Study:
 
     def relative(self, name, from_s=0.0):
         """|prediction - measured| / |measured| in percent, a free run from rest, judged from `from_s` on."""
-        self.stillhand("predict", self.model, DATA / f"{name}.csv", "--out", self.prediction)
+        stillhand("predict", self.model, DATA / f"{name}.csv", "--out", self.prediction)
         times = column(DATA / f"{name}.csv", "t")
         measured = column(DATA / f"{name}.csv", self.output)
         model = column(self.prediction, f"{self.output}_model")
-        first = next(i for i, t in enumerate(times) if t - times[0] >= from_s)
-        wrong = [m - y for m, y in zip(model[first:], measured[first:])]
-        return 100.0 * norm(wrong) / norm(measured[first:])
+        judged = times - times[0] >= from_s
+        return 100.0 * norm((model - measured)[judged]) / norm(measured[judged])
 
 
 class Table:
@@ -167,9 +144,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="without Silverbox")
     quick = parser.parse_args().quick
-    if not (DATA / "emps_estimation.csv").is_file():
-        print(f"skipped: no recordings in {DATA}; STILLHAND_DATA names their folder")
-        sys.exit(SKIPPED)
+    needs("emps_estimation.csv")
     table = Table()
     with tempfile.TemporaryDirectory() as holder:
         for judge in (treadmill, emps, shaking_table, damper, *(() if quick else (silverbox,))):

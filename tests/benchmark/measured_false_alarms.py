@@ -16,21 +16,16 @@ Exit status 1 where the alarms are more than `--rate` allows (exact binomial, 5 
 """
 import argparse
 import collections
-import csv
 import json
 import math
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 import numpy
 
-SKIPPED = 77
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-DATA = pathlib.Path(os.environ.get("STILLHAND_DATA", SOURCE.parent / "shared" / "data"))
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+from recorded_data import DATA, column, needs, stillhand
+
 ROWS = 6000
 LEVELS = (0.05, 0.15, 0.4)  # noise over output, RMS
 OF_TIME_ALONE = {"tone", "drift", "transients", "regime_change", "time_varying_gain", "clock_drift"}
@@ -47,19 +42,6 @@ NOISES = {
     "belt, residual": ("treadmill_slow1", "pitch_moment"),
     "rotating belt": ("treadmill_slow1", "belt_velocity"),
 }
-
-
-def stillhand(*words):
-    run = subprocess.run([str(BUILD / "bin" / "stillhand"), *map(str, words)], capture_output=True, text=True)
-    if run.returncode:
-        sys.exit(f"measured_false_alarms: {run.stderr.strip()}")
-
-
-def column(path, name):
-    with open(path, newline="") as file:
-        rows = csv.reader(file)
-        at = [title.split(" [")[0] for title in next(rows)].index(name)
-        return numpy.array([float(row[at]) for row in rows])
 
 
 def without_slow_part(values, rate_hz):
@@ -155,9 +137,7 @@ def main():
     parser.add_argument("--rate", type=float, default=0.05, help="the rate of false alarms asked for")
     parser.add_argument("--verbose", action="store_true")
     options = parser.parse_args()
-    if not (DATA / "car_ride.csv").is_file():
-        print(f"skipped: no recordings in {DATA}; STILLHAND_DATA names their folder")
-        sys.exit(SKIPPED)
+    needs("car_ride.csv")
     with tempfile.TemporaryDirectory() as holder:
         random = numpy.random.default_rng(options.seed)
         counts = survey(pathlib.Path(holder), options.body or BODIES, options.draws, random, options.verbose)

@@ -19,8 +19,9 @@ import tempfile
 import numpy
 
 from carried_chain import Chain
-from carried_pairs import BUILD, Pair
+from carried_pairs import Pair
 from carried_table import WORST, ratio
+from recorded_data import BUILD
 
 KINDS = ("delay", "resonance", "coupled_input", "coulomb_friction", "nonlinear_stiffness", "asymmetry", "hysteresis",
          "dead_zone", "output_saturation", "input_saturation", "position_ripple", "tone", "drift", "time_varying_gain",

@@ -17,7 +17,6 @@ white noise, and how much larger it has to be under the other noises.
 import argparse
 import csv
 import math
-import os
 import pathlib
 import subprocess
 import sys
@@ -25,8 +24,8 @@ import tempfile
 
 import numpy
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+from recorded_data import BUILD
+
 RIDGE = 0.05  # a kind that is always found has no curve of its own: pulled to the common one
 
 

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The residual engine on measured recordings that anybody can get, next to what is known of them.
 
-Four recordings are inside Debian packages. The script gets the packages with `apt-get download` (nothing is
-installed), or takes them from --folder. The fifth is a file of a public repository; put it into --folder, or it is
-skipped. SOURCES names package, file, repository, commit and licence of each. The project holds none of the data.
+The recordings are inside Debian packages. The script gets the packages with `apt-get download` (nothing is installed),
+or takes them from --folder. SOURCES names package, file and licence of each. The project holds none of the data.
 
 The columns: the effects found; the error on blocks that the fit did not see, before and after; the error on a record
 that nothing was fitted to, without its first tenth (the start is unknown to every model). The last column has what is
@@ -37,12 +36,11 @@ import tempfile
 
 import numpy
 
-SKIPPED = 77
+from recorded_data import SKIPPED, columns_of, stillhand
+
 NO_HARM = 1.05
-# What the CSV states. Published: dryer. Not published: robot_arm, cd_arm. Slower: a day (ice_river), 4 s (tanks).
-PERIOD_S = {"dryer": 0.08, "robot_arm": 0.1, "cd_arm": 0.1, "ice_river": 0.1, "tanks": 0.1}
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+# What the CSV states. Published: dryer. Not published: robot_arm, cd_arm. Slower: a day (ice_river).
+PERIOD_S = {"dryer": 0.08, "robot_arm": 0.1, "cd_arm": 0.1, "ice_river": 0.1}
 FOLDER = os.environ.get("STILLHAND_PUBLIC_DATA")
 
 SLICOT = "usr/share/doc/libslicot-doc/examples/fortran77/"
@@ -55,10 +53,6 @@ SOURCES = {
                    origin="DaISy 96-007, the arm of a CD player"),
     "ice_river": dict(package="r-cran-tseries", member="usr/lib/R/site-library/tseries/data/ice.river.rda",
                       licence="GPL", origin="two Icelandic rivers and their weather, daily, 1972 to 1974 (Tong 1990)"),
-    "tanks": dict(file="dataBenchmark.csv", licence="MIT",
-                  repository="MiladBnit/Uncertainty-quantification-in-neural-state-space-models-applications",
-                  commit="2a565d57ca30bdf126da507c00ad1f1e481ca434",
-                  origin="cascaded tanks with overflow (Schoukens, Mattson, Wigren and Noel 2016)"),
 }
 # Of the CSV files that the figures in services/core/diagnosis/RESULTS.md were measured on.
 SHA_256 = {
@@ -70,8 +64,6 @@ SHA_256 = {
     "ice_river_fit.csv": "47573686d1014816549a04a80e1c83e03b5e890755c8235cad93ce8123a36e6d",
     "robot_arm_check.csv": "5dae7041f3f992b95d665b4b1d448725ef79488f5cf7dcdd9986c9d335cbb7d1",
     "robot_arm_fit.csv": "1577d2ef4d5c5aebc866797a657e6a333539cd487685f12d14098e60853d80ba",
-    "tanks_check.csv": "d4bb55dbe8bdceeb8c35010c64f89e7d06d8ba412b4cfc8ab6199dcafc58a10d",
-    "tanks_fit.csv": "a0f17a790a8346a4a06cb14278397e74991fe0598b27ce78e6e0e9b7a0934c20",
 }
 
 
@@ -94,13 +86,6 @@ def package_member(folder, source, scratch):
     if not members:
         raise Missing(f"{found[-1].name} has no {source['member']}")
     return members[0]
-
-
-def repository_file(folder, source):
-    path = folder / source["file"] if folder else None
-    if path is None or not path.is_file():
-        raise Missing(f"put {source['file']} of {source['repository']}, commit {source['commit'][:10]}, into --folder")
-    return path
 
 
 def slicot_numbers(path):
@@ -173,16 +158,7 @@ def ice_river(path, out, period_s):
     return pair(out, "ice_river", period_s, titles, [temperature, precipitation, glacier, lowland], middle=731)
 
 
-def tanks(path, out, period_s):
-    with open(path, newline="") as file:
-        rows = [row[:4] for row in csv.reader(file) if row and not row[0].startswith("uEst")]
-    u_fit, u_check, y_fit, y_check = (list(column) for column in zip(*rows))
-    titles = ["pump [V]", "level [V]"]
-    return [write(out / "tanks_fit.csv", period_s, titles, [u_fit, y_fit]),
-            write(out / "tanks_check.csv", period_s, titles, [u_check, y_check])]
-
-
-# What is run on each CSV pair: inputs, output, what is known of the effect, published errors.
+# What is run on each CSV pair: inputs, output, what is known of the effect.
 STUDIES = {
     "dryer": [dict(inputs="voltage", output="temperature", known="nearly linear, with a dead time")],
     "robot_arm": [dict(inputs="torque", output="acceleration", known="linear, two modes with little damping")],
@@ -191,16 +167,7 @@ STUDIES = {
     "ice_river": [dict(inputs="temperature,precipitation", output="glacier_river", kink="temperature",
                        known="ice melts above 0 degrees only; the season"),
                   dict(inputs="temperature,precipitation", output="lowland_river", known="no glacier: little of it")],
-    "tanks": [dict(inputs="pump", output="level", known="limited at 10 V; outflow by the level's root; overflow",
-                   published="0.757 V best linear, 0.540 Volterra, 0.450 and 0.343 nonlinear state space")],
 }
-
-
-def columns_of(path, names):
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    at = [[title.split(" [")[0] for title in rows[0]].index(name) for name in names]
-    return [numpy.array([float(row[column]) for row in rows[1:]]) for column in at]
 
 
 def rms(values):
@@ -253,12 +220,6 @@ class Reference:
         return self.run(self.numbers, inputs, output, self.order) - output
 
 
-def stillhand(*words):
-    run = subprocess.run([str(BUILD / "bin" / "stillhand"), *map(str, words)], capture_output=True, text=True)
-    if run.returncode:
-        sys.exit(f"public_recordings: {run.stderr.strip()}")
-
-
 class Study:
     """One diagnosis, and free runs of its model and of the linear one on the record that it did not see."""
 
@@ -291,7 +252,7 @@ class Study:
         """Without the first tenth: the start is unknown to every model."""
         return rms(self.wrong[which][len(self.measured) // 10:])
 
-    def rows(self, name, known, published=""):
+    def rows(self, name, known):
         verdict, unit = self.verdict, self.verdict["output_unit"]
         spread = rms(self.measured - self.measured.mean())
         effects = ", ".join(f"{effect['kind']} ({effect['form']})" for effect in verdict["effects"])
@@ -305,14 +266,12 @@ class Study:
                    f"{self.settled('by hand'):.4g} by hand, order {self.reference.order}, decays in "
                    f"{self.reference.decay():.3g} rows")
         for which in ("linear", "effects"):
-            yield name, f"unseen, {which}, whole [{unit}]", f"{rms(self.wrong[which]):.4g}", published
+            yield name, f"unseen, {which}, whole [{unit}]", f"{rms(self.wrong[which]):.4g}", ""
 
 
 def prepared(name, options, scratch, out):
     """The CSV pair of a recording, and the names of those that are not the files of the RESULTS' figures."""
-    source = SOURCES[name]
-    folder = options.folder
-    path = package_member(folder, source, scratch) if "package" in source else repository_file(folder, source)
+    path = package_member(options.folder, SOURCES[name], scratch)
     files = globals()[name](path, out, options.period or PERIOD_S[name])
     if options.period:
         return files, []
@@ -325,7 +284,7 @@ def judged(name, options, scratch, out):
     wrong = [f"{each} is not the file of the figures in RESULTS" for each in other]
     for asked in STUDIES[name]:
         study = Study(scratch, fit, check, asked["inputs"], asked["output"])
-        for row in study.rows(f"{name}, {asked['output']}", asked["known"], asked.get("published", "")):
+        for row in study.rows(f"{name}, {asked['output']}", asked["known"]):
             print(f"| {' | '.join(row)} |", flush=True)
         if "kink" in asked:
             kinked = study.kinked(fit, asked["inputs"].split(","), asked["kink"])
@@ -338,7 +297,7 @@ def judged(name, options, scratch, out):
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=pathlib.Path, default=FOLDER and pathlib.Path(FOLDER),
-                        help="your downloads: .deb files, dataBenchmark.csv (default: STILLHAND_PUBLIC_DATA)")
+                        help="your downloads: .deb files (default: STILLHAND_PUBLIC_DATA)")
     parser.add_argument("--only", choices=SOURCES, action="append", help="this recording; may be given again")
     parser.add_argument("--period", type=float, help="seconds between two rows of the CSV, instead of PERIOD_S")
     parser.add_argument("--keep", type=pathlib.Path, help="folder in which the CSV files stay")
@@ -348,7 +307,7 @@ def arguments():
 def main():
     options = arguments()
     wrong, recordings = [], 0
-    print("| recording | figure | found | known, published or by hand |\n| --- | --- | --- | --- |")
+    print("| recording | figure | found | known or by hand |\n| --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as holder:
         scratch = pathlib.Path(holder)
         out = options.keep or scratch
