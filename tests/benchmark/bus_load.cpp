@@ -2,8 +2,7 @@
 // bus_load DOMAIN RATE SECONDS [PATTERN]: messages of one 1 kHz type on ten topics "load/0" to
 // "load/9", RATE a second in all, evenly, then prints how many were sent and how big they are.
 // bus_load --write FILE RATE SECONDS: the same messages as a recording instead, for a replay.
-// bus_load --span FILE: nanoseconds from a recording's first message to its last.
-// Used by record_rate.py and replay_timing.py.
+// Used by record_rate.py and by tests of record and replay.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -19,7 +18,6 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/recording/qos_texts.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/core/recording/mcap/mcap_reader.hpp"
 #include "services/core/recording/mcap/mcap_writer.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/system/process/real_time.hpp"
@@ -118,12 +116,6 @@ int main(int argc, char** argv) {
     const std::vector<std::string> words(argv + 1, argv + argc);
     if (words.size() == 4 && words[0] == "--write") {
       return write_file(words[1], std::stoll(words[2]), std::stoll(words[3]));
-    }
-    if (words.size() == 2 && words[0] == "--span") {
-      recording::FileSource file(words[1]);
-      const recording::McapReader reader(file);
-      std::cout << reader.statistics().end_time_ns - reader.statistics().start_time_ns << '\n';
-      return reader.indexed() ? 0 : 1;
     }
     if (words.size() < 3) {
       std::cerr << "bus_load: want DOMAIN RATE SECONDS [PATTERN], or --write FILE RATE SECONDS\n";

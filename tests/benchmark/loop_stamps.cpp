@@ -2,8 +2,8 @@
 // loop_stamps FILE: latencies of the control loop in a session's recording, by the stamps of its
 // messages, as one JSON object [us]: from the raw sample to the sensed sample, to the motor command
 // and to the rig's step that used it, and the parts between them.  The ticks are those of the
-// measured parts of the trials in which the motor may act.  "late": samples that the rig took, and
-// commands that came, more than 1 ms after they were due.  Used by loop_latency.py, loop_misses.py.
+// measured parts of the trials in which the motor may act.  Used by loop_latency.py and
+// device_latency.py.
 #include <algorithm>
 #include <iostream>
 #include <map>
@@ -78,21 +78,6 @@ std::map<Tick, Stamps> stamps_of(const session::SessionRecording& session) {
   return by_tick;
 }
 
-// A sample is due a millisecond after the one before: after a standstill the rig's clock does not
-// catch up.
-json late_of(const std::map<Tick, Stamps>& by_tick) {
-  constexpr std::int64_t kCycle_ns = 1'000'000;
-  std::size_t samples = 0, commands = 0;
-  std::int64_t before_ns = 0;
-  for (const auto& [tick, s] : by_tick) {
-    if (s.raw_ns == 0) continue;
-    if (before_ns != 0 && s.raw_ns - before_ns > 2 * kCycle_ns) ++samples;
-    if (s.command_ns == 0 || s.command_ns - s.raw_ns > kCycle_ns) ++commands;
-    before_ns = s.raw_ns;
-  }
-  return {{"samples", samples}, {"commands", commands}};
-}
-
 json loop_of(const session::SessionRecording& session) {
   const std::map<Tick, Stamps> by_tick = stamps_of(session);
   std::vector<std::int64_t> sensed, command, used, to_sensed, to_command, to_use;
@@ -112,7 +97,6 @@ json loop_of(const session::SessionRecording& session) {
   const double ticks = static_cast<double>(std::max<std::size_t>(by_tick.size(), 1));
   return {{"ticks", by_tick.size()},
           {"unanswered", by_tick.size() - command.size()},
-          {"late", late_of(by_tick)},
           {"same_cycle_share", static_cast<double>(same_cycle) / ticks},
           {"sensed", benchmark::figures(sensed)},
           {"command", benchmark::figures(command)},
