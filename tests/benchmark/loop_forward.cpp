@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// loop_forward SECONDS DOMAIN [PROFILES [poll]]: the control loop without its content, on plain
-// Fast DDS. Three processes with the QoS profiles, types and threads of rig, sensing and
+// loop_forward SECONDS DOMAIN [PROFILES]: the control loop without its content, on plain Fast DDS.
+// Three processes with the QoS profiles, types and threads of rig, sensing and
 // cancellation: a raw sample at 1 kHz becomes a sensed sample and a motor command, and comes back.
-// Prints latencies from the raw sample's stamp as one JSON object [us].  poll: the rig's thread
-// looks for the answer without a pause instead of sleeping.  Used by loop_latency.py.
+// Prints latencies from the raw sample's stamp as one JSON object [us].  Used by loop_latency.py.
 #include <semaphore.h>
 
 #include <array>
@@ -123,8 +122,8 @@ int forward(std::uint32_t domain, const std::string& profiles, const topics::Top
 /// The rig's place: its loop waits for each answer, as the rig's does.
 class Clock {
  public:
-  Clock(std::uint32_t domain, const std::string& profiles, std::size_t ticks, bool polls)
-      : participant_(domain, profiles), answers_(ticks + 1), polls_(polls) {
+  Clock(std::uint32_t domain, const std::string& profiles, std::size_t ticks)
+      : participant_(domain, profiles), answers_(ticks + 1) {
     sem_init(&arrived_, 0, 0);
     raw_ = participant_.writer(
         topics::kRawSample, edds::TypeSupport(new stillhand_msgs::RawSamplePubSubType()), quiet_);
@@ -181,9 +180,6 @@ class Clock {
   }
   bool wait_for(std::int64_t tick, std::int64_t until_ns) {
     const timespec until{until_ns / runtime::kNsPerSecond, until_ns % runtime::kNsPerSecond};
-    while (polls_ && answered_.load() < tick) {
-      if (monotonic_ns() > until_ns) return false;
-    }
     while (answered_.load() < tick) {
       if (sem_clockwait(&arrived_, CLOCK_MONOTONIC, &until) != 0) return false;
     }
@@ -202,19 +198,17 @@ class Clock {
   Participant participant_;
   edds::DataWriter* raw_ = nullptr;
   std::vector<Answer> answers_;
-  bool polls_;
   std::atomic<std::int64_t> answered_{-1};
   sem_t arrived_{};
 };
 
-int measure(const std::string& seconds, const std::string& domain, const std::string& profiles,
-            bool polls) {
+int measure(const std::string& seconds, const std::string& domain, const std::string& profiles) {
   using namespace stillhand_msgs;  // NOLINT(google-build-using-namespace): as above
   const std::filesystem::path self = std::filesystem::canonical("/proc/self/exe");
   const support::Child sensing({self, "--sensing", domain, profiles}, "/dev/null");
   const support::Child cancellation({self, "--cancellation", domain, profiles}, "/dev/null");
   Clock clock(static_cast<std::uint32_t>(std::stoul(domain)), profiles,
-              static_cast<std::size_t>(std::stod(seconds) * 1000.0), polls);
+              static_cast<std::size_t>(std::stod(seconds) * 1000.0));
   std::cout << clock.run() << '\n';
   return 0;
 }
@@ -226,7 +220,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> given(argv + 1, argv + argc);
   try {
     if (given.size() < 2) {
-      std::cerr << "usage: loop_forward SECONDS DOMAIN [PROFILES [poll]]\n";
+      std::cerr << "usage: loop_forward SECONDS DOMAIN [PROFILES]\n";
       return 2;
     }
     const std::string profiles =
@@ -241,7 +235,7 @@ int main(int argc, char** argv) {
       return forward<Sensed, SensedPubSubType, MotorCommand, MotorCommandPubSubType>(
           domain, profiles, topics::kSensed, topics::kMotorCommand);
     }
-    return measure(given[0], given[1], profiles, given.size() > 3 && given[3] == "poll");
+    return measure(given[0], given[1], profiles);
   } catch (const std::exception& error) {
     std::cerr << "loop_forward: " << error.what() << '\n';
     return 1;

@@ -3,7 +3,7 @@
 """How fast the control loop is, next to what the machine and two middlewares allow, in one run.
 
     tests/benchmark/loop_latency.py [--seconds 600] [--round 20] [--only lab,bare] [--lab NAME=PROGRAMS[,CONFIG]]...
-                                    [--bare NAME=LOOP_FORWARD]... [--awake]
+                                    [--bare NAME=LOOP_FORWARD]...
 
 The contenders take turns, a round of each and again, so that what else the machine does hits all alike:
 
@@ -12,13 +12,11 @@ The contenders take turns, a round of each and again, so that what else the mach
   ddsperf      Cyclone DDS: `ddsperf ping 1kHz` and `pong`, 256 bytes, best effort (package cyclonedds-tools)
   cyclictest   how late the kernel wakes a thread, `cyclictest -p80 -i1000` (package rt-tests)
 
---lab adds the lab of another build, --bare the plain loop of another Fast DDS, so that both are of one run. Prints a row a round on standard error,
-and at the end one table: medians over the rounds of p50, p99 and p99.9, and the worst of all, in microseconds. All
-contenders run with SCHED_FIFO where the system grants it. With --awake no processor sleeps meanwhile; cyclictest
-always asks for that itself.
+--lab adds the lab of another build, --bare the plain loop of another Fast DDS, so that both are of one run. Prints a
+row a round on standard error, and at the end one table: medians over the rounds of p50, p99 and p99.9, and the worst of
+all, in microseconds. All contenders run with SCHED_FIFO where the system grants it.
 """
 import argparse
-import contextlib
 import datetime
 import json
 import os
@@ -26,16 +24,14 @@ import pathlib
 import re
 import shutil
 import statistics
-import struct
 import subprocess
 import sys
 import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
 sys.path.insert(0, str(SOURCE / "tests" / "integration"))
 
-from lab_process import next_domain  # noqa: E402
+from lab_process import BUILD, loose_settings, next_domain  # noqa: E402
 
 QUANTILES = ("p50", "p99", "p999", "worst")
 LOOPBACK = ('<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="127.0.0.1" multicast="true"/>'
@@ -48,21 +44,13 @@ def real_time_words():
     return ["chrt", "-f", "40"] if granted else []
 
 
-def settings(folder, origin):
-    """A pegged trial of 5 s gives a rough model; here it need not be a good one."""
-    shutil.copytree(origin, folder)
-    with open(folder / "identification.yaml", "a", encoding="utf-8") as file:
-        file.write("max_conversion_error: 1.0\n")
-    return folder
-
-
 def lab(programs, config, seconds, domain):
     """{row: figures} of one session."""
     with tempfile.TemporaryDirectory(prefix="stillhand-") as scratch:
         out = pathlib.Path(scratch) / "session"
         words = [programs / "stillhand", "lab", "--conditions", "C", "--identify-seconds", "5", "--trial-seconds",
                  str(seconds), "--seed", "2", "--headless", "--domain", str(domain), "--out", out, "--config",
-                 settings(pathlib.Path(scratch) / "config", config)]
+                 loose_settings(pathlib.Path(scratch) / "config", config)]
         done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
         if done.returncode != 0:
             raise RuntimeError(f"the session failed: {done.stderr.strip()}")
@@ -176,7 +164,6 @@ def main():
     words.add_argument("--seconds", type=int, default=600, help="of each contender in all [600]")
     words.add_argument("--round", type=int, default=20, help="seconds of a turn [20]")
     words.add_argument("--only", default="lab,bare,ddsperf,cyclictest")
-    words.add_argument("--awake", action="store_true", help="keep processors awake (/dev/cpu_dma_latency)")
     words.add_argument("--lab", action="append", default=[], metavar="NAME=PROGRAMS[,CONFIG]")
     words.add_argument("--bare", action="append", default=[], metavar="NAME=LOOP_FORWARD")
     options = words.parse_args()
@@ -202,11 +189,7 @@ def main():
     if "cyclictest" in chosen and shutil.which("cyclictest"):
         calls["cyclictest"] = lambda: cyclictest(options.round)
     results = {name: [] for name in calls}
-    request = open("/dev/cpu_dma_latency", "wb", buffering=0) if options.awake else contextlib.nullcontext()
-    with request:
-        if options.awake:
-            request.write(struct.pack("i", 0))  # us; as long as the file is open
-        take_turns(calls, max(1, options.seconds // options.round), results)
+    take_turns(calls, max(1, options.seconds // options.round), results)
     print(f"{datetime.date.today()}, {os.cpu_count()} cores, kernel {os.uname().release}, "
           f"SCHED_FIFO {'granted' if first else 'refused'}, "
           f"{options.seconds} s of each contender in turns of {options.round} s")
