@@ -10,20 +10,16 @@ recorder, which no fault of the network reaches; what the screen says is read fr
 import argparse
 import contextlib
 import io
-import json
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
 
-import lab_process  # noqa: E402
 import network  # noqa: E402
-from lab_process import (INSPECT, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabProcess, hold,  # noqa: E402
-                         next_domain, quick_session)
+from lab_process import TRIAL_LIMIT_S, LabProcess, hold, next_domain, quick_session  # noqa: E402
 
 TRIAL_S = 15
 FAULT_AT_S = 3
@@ -70,36 +66,6 @@ FAULTS = (
     + [(f"{name}'s cable at 10 Mbit/s", name, lambda m: m.limited_to(10e6)) for name in ("screen-pc", "rig-pc")]
     + [(f"{name} without power", name, powerless) for name in ("screen-pc", "rig-pc")]
 )
-
-
-class Witness:
-    """Records the rig's truth on the rig's own machine."""
-
-    def __init__(self, lab_network, inventory, domain, folder):
-        self.machine = lab_network["rig-pc"]
-        generated = folder / "generated"
-        subprocess.run([STILLHAND, "deploy", "generate", inventory, "--out", generated], check=True, capture_output=True)
-        self.machine.run("sh", "-c", "cat > /tmp/profiles.xml", text=(generated / "rig-pc" / "profiles.xml").read_text())
-        self.process = subprocess.Popen(
-            [*self.machine.words(), "sh", "-c",
-             f"echo $$ > /tmp/witness.pid; exec {network.BUILD_THERE}/bin/stillhand record --domain {domain} "
-             "--topics stillhand/rig_truth --profiles /tmp/profiles.xml --out /tmp/witness.mcap"],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
-    def rig(self, file):
-        """Its recording as inspect_recording prints it; None if the machine is gone."""
-        with contextlib.suppress(RuntimeError):
-            self.machine.run("sh", "-c", "kill -INT $(cat /tmp/witness.pid)")
-        self.process.wait(timeout=20)
-        with open(file, "wb") as out:
-            copied = subprocess.run([*self.machine.words(), "cat", "/tmp/witness.mcap"], stdout=out,
-                                    stderr=subprocess.DEVNULL, check=False)
-        with contextlib.suppress(RuntimeError):
-            self.machine.run("sh", "-c", "rm -f /tmp/witness* /tmp/profiles.xml")
-        if copied.returncode != 0:
-            return None
-        told = subprocess.run([INSPECT, file, str(10**6)], capture_output=True, text=True, check=True)
-        return json.loads(told.stdout)["rig"]
 
 
 def frames(avi):
@@ -166,7 +132,7 @@ def row(lab_network, name, machine, fault, folder):
     inventory = lab_network.inventory(domain)
     words = [str(word) for word in quick_session(folder / "config")]
     words[words.index("--trial-seconds") + 1] = str(TRIAL_S)
-    witness = Witness(lab_network, inventory, domain, folder)
+    witness = network.Witness(lab_network["rig-pc"], inventory, domain, folder)
     lab = LabProcess(folder / "run", "--video", *words, domain=domain, start=lab_network[network.HERE].words(),
                      inventory=inventory)
     try:
@@ -174,7 +140,7 @@ def row(lab_network, name, machine, fault, folder):
         cut_ns = lab_network["rig-pc"].clock_ns()
         with fault(lab_network[machine]):
             status = lab.end_status(END_LIMIT_S)
-        rig = witness.rig(folder / "witness.mcap")
+        rig = witness.rig()
         link_lost_s = screen_says(folder / "run" / "screen.avi")
         screen = "no picture left" if link_lost_s is None else f"LINK LOST for {link_lost_s:.1f} s"
         trial = lab.recording(1)["trials"][-1]
@@ -182,8 +148,7 @@ def row(lab_network, name, machine, fault, folder):
         return f"| {name} | {force} | {screen} | {recorded_words(lab)} | {ended_words(lab, status)} |"
     finally:
         lab.close()
-        witness.process.kill()
-        witness.process.wait()
+        witness.close()
 
 
 def main():

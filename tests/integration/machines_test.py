@@ -6,14 +6,12 @@ platform moves brakes it; a host that cannot be reached is named.
 With `--campaign`: a session gives the results of one machine; a machine that loses its power; a clock that drifts and
 jumps, one that is set back; services that run already.
 """
-import base64
-import json
 import os
 import subprocess
 
 import lab_process
 import network
-from lab_process import BUILD, INSPECT, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, hold, next_domain, \
+from lab_process import BUILD, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, hold, next_domain, \
     quick_session
 
 SESSION_LIMIT_S = 150
@@ -173,35 +171,12 @@ class MachinesTest(LabTestCase):
         self.assertLessEqual(ticks, FORCE_LIMIT_TICKS)
         self.assertEqual(lab.recording(1)["damage"], [])
 
-    def record_on(self, machine, domain, inventory):
-        """Records the rig's truth on a machine itself, without its cable; returns a call that ends and reads it."""
-        subprocess.run([str(STILLHAND), "deploy", "generate", str(inventory), "--out", str(self.folder / "files")],
-                       check=True, capture_output=True)
-        machine.run("mkdir", "/tmp/kept")
-        self.addCleanup(machine.run, "rm", "-r", "/tmp/kept")
-        machine.run("sh", "-c", "cat > /tmp/kept/profiles.xml",
-                    text=(self.folder / "files" / machine.name / "profiles.xml").read_text())
-        recorder = subprocess.Popen(
-            [*machine.words(), "sh", "-c", "echo $$ > /tmp/kept/pid; exec " + " ".join(
-                [f"{network.BUILD_THERE}/bin/stillhand", "record", "--out", "/tmp/kept/rig.mcap", "--domain", str(domain),
-                 "--topics", "stillhand/rig_truth", "--profiles", "/tmp/kept/profiles.xml"])],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-        self.addCleanup(recorder.kill)
-
-        def kept():
-            machine.run("sh", "-c", "kill -INT $(cat /tmp/kept/pid)")
-            recorder.wait(timeout=30)
-            file = self.folder / "rig.mcap"
-            file.write_bytes(base64.b64decode(machine.run("base64", "/tmp/kept/rig.mcap")))
-            inspected = subprocess.run([str(INSPECT), str(file), "1000000"], capture_output=True, text=True, check=True)
-            return json.loads(inspected.stdout)["rig"]
-        return kept
-
     def test_the_rig_brakes_the_platform_when_its_own_cable_is_pulled(self):
         domain = next_domain()
         inventory = self.network.inventory(domain)
         rig_pc = self.network["rig-pc"]
-        kept = self.record_on(rig_pc, domain, inventory)
+        witness = network.Witness(rig_pc, inventory, domain, self.folder)
+        self.addCleanup(witness.close)
         lab = self.lab(*quick_session(self.folder / "config"), domain=domain, start=self.network[network.HERE].words(),
                        inventory=inventory)
         lab.wait_for_tick(1, 3, TRIAL_LIMIT_S)
@@ -211,7 +186,7 @@ class MachinesTest(LabTestCase):
         hold(3.0)
         rig_pc.plug_back()
         self.assertEqual(lab.end_status(END_LIMIT_S), 1)
-        rig = kept()
+        rig = witness.rig()
         # Motion went on: it is on the machine of the rig.
         rows = list(zip(rig["stamp_ns"], rig["velocity_m_s"], rig["command_tick"]))
         before = [abs(v) for at_ns, v, _ in rows if cut_ns - 1_000_000_000 <= at_ns < cut_ns]

@@ -6,13 +6,14 @@ Each machine has an address, a loopback and a /dev/shm of its own; all but the d
 machine is touched. Needs root and namespaces: why_not() says what is missing.
 """
 import contextlib
+import json
 import pathlib
 import shutil
 import subprocess
 import tempfile
 import time
 
-from lab_process import BUILD
+from lab_process import BUILD, INSPECT, STILLHAND
 
 TOOLS = ("ip", "tc", "unshare", "nsenter", "iptables", "mount")
 # Services of the lab under test. The loop of sensor, canceller and motor stays on one machine (deploy/README.md).
@@ -205,3 +206,37 @@ class Network:
         for namespace in [machine.namespace for machine in self.machines.values()] + [self.switch]:
             subprocess.run(["ip", "netns", "delete", namespace], capture_output=True, check=False)
         self._folder.cleanup()
+
+
+class Witness:
+    """Records the rig's truth on a machine itself, where no cable reaches it."""
+
+    def __init__(self, machine, inventory, domain, folder):
+        self.machine, self.folder = machine, pathlib.Path(folder)
+        generated = self.folder / "generated"
+        subprocess.run([STILLHAND, "deploy", "generate", inventory, "--out", generated], check=True, capture_output=True)
+        machine.run("sh", "-c", "cat > /tmp/profiles.xml", text=(generated / machine.name / "profiles.xml").read_text())
+        self.process = subprocess.Popen(
+            [*machine.words(), "sh", "-c",
+             f"echo $$ > /tmp/witness.pid; exec {BUILD_THERE}/bin/stillhand record --domain {domain} "
+             "--topics stillhand/rig_truth --profiles /tmp/profiles.xml --out /tmp/witness.mcap"],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def rig(self):
+        """Ends it; its recording as inspect_recording prints it, or None if the machine is gone."""
+        file = self.folder / "witness.mcap"
+        with contextlib.suppress(RuntimeError):
+            self.machine.run("sh", "-c", "kill -INT $(cat /tmp/witness.pid)")
+        self.process.wait(timeout=30)
+        with open(file, "wb") as out:
+            copied = subprocess.run([*self.machine.words(), "cat", "/tmp/witness.mcap"], stdout=out,
+                                    stderr=subprocess.DEVNULL, check=False)
+        with contextlib.suppress(RuntimeError):
+            self.machine.run("sh", "-c", "rm -f /tmp/witness* /tmp/profiles.xml")
+        if copied.returncode != 0:
+            return None
+        return json.loads(subprocess.check_output([INSPECT, file, str(10**6)]))["rig"]
+
+    def close(self):
+        self.process.kill()
+        self.process.wait()
