@@ -28,7 +28,7 @@ sys.path[:0] = [str(TESTS / "integration"), str(TESTS / "support")]
 
 from emulated_laboratory import MAX_AGE_MS, PROGRAM, WATCHDOG_MS, EmulatedLaboratory  # noqa: E402
 from lab_process import BUILD, STILLHAND, LabProcess, loose_settings, next_domain  # noqa: E402
-from tables import columns  # noqa: E402
+from verb_case import columns  # noqa: E402
 
 LOOP_STAMPS = BUILD / "tests" / "loop_stamps"
 LEVER_M = 0.10        # rig.yaml

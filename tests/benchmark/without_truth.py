@@ -23,7 +23,7 @@ sys.path[:0] = [str(TESTS / "integration"), str(TESTS / "support")]
 
 from lab_process import STILLHAND  # noqa: E402
 from sample_experiment import conduct, stillhand  # noqa: E402
-from tables import columns  # noqa: E402
+from verb_case import columns  # noqa: E402
 
 FITTED = 0.7
 IDENTIFY_S = 150  # of which the last 45 s are four blocks of CL-6

@@ -12,8 +12,6 @@ from lab_process import BUILD, INSPECT, SERVICES, SOURCE, TICKS_PER_S, TRIAL_LIM
     next_domain, quick_session
 
 
-STRANGER = BUILD / "tests" / "stranger"
-
 
 class Units:
     """Every service but the experiment; each is restarted when it ends, as by a unit with Restart=always."""
@@ -89,22 +87,15 @@ class AttachTest(LabTestCase):
         self.assertEqual(lab.end_status(), 1)
         self.assertIn("motion ended: its life sign is gone", " ".join(lab.errors()))
 
-    def stranger(self, what):
-        """A program of no lab on the domain (stranger.cpp)."""
-        stranger = subprocess.Popen([str(STRANGER), str(self.domain), what, "a stranger"], stdout=subprocess.DEVNULL)
-        self.addCleanup(stranger.wait)
-        self.addCleanup(stranger.kill)
-        return stranger
-
     def test_services_that_run_already_hold_a_whole_session_after_one_that_broke(self):
         self.broken_session()
         # It says from before the session to its end, as the recorder, which file is the recording: whole_session()
         # reads what the lab fetched.
-        self.stranger("misleads")
+        self.stranger(self.domain, "misleads", "a stranger")
         self.whole_session("second")
 
     def test_services_that_run_already_obey_no_stranger_that_conducts_them_first(self):
-        stranger = self.stranger("conducts")
+        stranger = self.stranger(self.domain, "conducts", "a stranger")
         lab = self.lab(*self.words, "--attach", "--match-seconds", 15, domain=self.domain, out=self.folder / "contested")
         self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1)
         self.assertIn("two name the session's sources", " ".join(lab.errors()))

@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A test of verbs on a running bus: a folder, a domain, processes that do not outlive it, recordings looked into."""
-import csv
-import json
+"""A test of verbs on a running bus: a domain, and processes that do not outlive it."""
 import os
-import pathlib
 import subprocess
 import tempfile
-import unittest
 
 import lab_process
-from lab_process import STILLHAND, next_domain
+from lab_process import next_domain
+from verb_case import FolderCase
 
 LIMIT_S = 60.0
 # As the profiles: loopback alone, and its multicast for discovery.
@@ -19,22 +16,15 @@ CYCLONE_URI = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface addre
                "</Discovery></Domain></CycloneDDS>")
 
 
-def stillhand(*words):
-    return subprocess.run([str(STILLHAND), *map(str, words)], capture_output=True, text=True, check=False,
-                          timeout=LIMIT_S)
-
-
 def wait_for(what, condition):
     return lab_process.wait_for(what, condition, LIMIT_S)
 
 
-class Bus(unittest.TestCase):
+class Bus(FolderCase):
     ENVIRONMENT = {}
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.domain = next_domain()
 
     def start(self, *words, stdin=subprocess.DEVNULL):
@@ -58,16 +48,3 @@ class Bus(unittest.TestCase):
             return process.wait(timeout=LIMIT_S)
         process.said, process.end = said, end
         return process
-
-    def info(self, file):
-        found = stillhand("info", file, "--json", self.folder / "info.json")
-        self.assertEqual(found.returncode, 0, found.stderr)
-        return json.loads((self.folder / "info.json").read_text())
-
-    def rows(self, file, topic):
-        """Table of one topic, [{title with its unit: text}]."""
-        tables = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
-        exported = stillhand("export", file, "--csv", tables, "--topics", topic)
-        self.assertEqual(exported.returncode, 0, exported.stderr)
-        with open(tables / (topic.replace("/", "_") + ".csv"), newline="", encoding="utf-8") as table:
-            return list(csv.DictReader(table))

@@ -5,24 +5,15 @@
 By default the trials last 5 s. With `--campaign` they last 15 s, and the model that the loop ends with runs in the
 canceller of a session of its own.
 """
-import csv
 import json
-import pathlib
 import signal
 import subprocess
-import tempfile
-import unittest
 
 import lab_process
-from lab_process import INSPECT, campaign, loose_settings, next_domain, wait_for
+from lab_process import INSPECT, STILLHAND, campaign, loose_settings, next_domain, wait_for
+from verb_case import FolderCase
 
-STILLHAND = str(lab_process.STILLHAND)
-LOOP_LIMIT_S = 240
 START_LIMIT_S = 60.0
-
-
-def run(*words):
-    return subprocess.run([STILLHAND, *map(str, words)], capture_output=True, text=True, timeout=LOOP_LIMIT_S)
 
 
 def measuring(file):
@@ -32,25 +23,14 @@ def measuring(file):
     return any(trial["start_tick"] < tick for trial in found["trials"] for tick in found["rig"]["tick"][-1:])
 
 
-class CloseTheLoopLiveTest(unittest.TestCase):
+class CloseTheLoopLiveTest(FolderCase):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
+        super().setUp()
         self.out = self.folder / "loop"
 
-    def motor_commands(self, recording):
-        """Rows of the motor commands of a recording, {title: text}."""
-        tables = tempfile.mkdtemp(dir=self.folder)
-        exported = run("export", recording, "--csv", tables, "--topics", "stillhand/motor_command")
-        self.assertEqual(exported.returncode, 0, exported.stderr)
-        with open(pathlib.Path(tables) / "stillhand_motor_command.csv", encoding="utf-8", newline="") as table:
-            return list(csv.DictReader(table))
-
     def assert_loop_closes(self, trial_s):
-        ran = run("close-the-loop", "--live", "--domain", next_domain(), "--undeclared-effect", 9, "--seed", 3,
-                  "--trial-seconds", trial_s, "--identify-seconds", 30, "--out", self.out)
-        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.run_verb("close-the-loop", "--live", "--domain", next_domain(), "--undeclared-effect", 9, "--seed", 3,
+                      "--trial-seconds", trial_s, "--identify-seconds", 30, "--out", self.out)
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertTrue(summary["live"])
         self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C'", "C+"])
@@ -68,14 +48,10 @@ class CloseTheLoopLiveTest(unittest.TestCase):
             whole = causes.pop("left")["force_n"]
             self.assertAlmostEqual(sum(cause["force_n"] for cause in causes.values()), whole, places=6)
             self.assertAlmostEqual(whole, left[name], delta=0.1 * whole)
-        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
-                                 capture_output=True, text=True)
-        self.assertEqual(checked.returncode, 0, checked.stderr)
-        info = self.folder / "info.json"
-        self.assertEqual(run("info", self.out / "session.mcap", "--json", info).returncode, 0)
-        messages = {topic["topic"]: topic["messages"] for topic in json.loads(info.read_text())["topics"]}
+        self.assert_sealed(self.out)
+        messages = {topic["topic"]: topic["messages"] for topic in self.info(self.out / "session.mcap")["topics"]}
         self.assertGreaterEqual(messages["stillhand/augmented_model"], 1)
-        models = {row["model [-]"] for row in self.motor_commands(self.out / "session.mcap")}
+        models = {row["model [-]"] for row in self.rows(self.out / "session.mcap", "stillhand/motor_command")}
         self.assertTrue(models >= {"0", "1000"}, models)
         self.assertEqual(len(summary["rounds"][0]["weights"]), 2)
 
@@ -86,14 +62,13 @@ class CloseTheLoopLiveTest(unittest.TestCase):
     def test_the_model_of_a_closed_loop_runs_in_the_next_session(self):
         self.assert_loop_closes(trial_s=15)
         again = self.folder / "again"
-        ran = run("lab", "--model", self.out / "control_model.json", "--conditions", "C", "--seed", 4, "--trial-seconds",
-                  10, "--identify-seconds", 5, "--config", loose_settings(self.folder / "config"), "--headless",
-                  "--domain", next_domain(), "--out", again)
-        self.assertEqual(ran.returncode, 0, ran.stderr)
+        ran = self.run_verb("lab", "--model", self.out / "control_model.json", "--conditions", "C", "--seed", 4,
+                            "--trial-seconds", 10, "--identify-seconds", 5, "--config",
+                            loose_settings(self.folder / "config"), "--headless", "--domain", next_domain(), "--out", again)
         self.assertIn("control_model.json", ran.stdout)
         condition = json.loads((again / "summary.json").read_text())["conditions"]["C"]
         self.assertGreater(condition["sensor_to_command_us"]["p50"], 0.0)
-        enabled = {row["model [-]"] for row in self.motor_commands(again / "session.mcap")
+        enabled = {row["model [-]"] for row in self.rows(again / "session.mcap", "stillhand/motor_command")
                    if row["enabled [-]"] in ("1", "true")}
         self.assertEqual(enabled, {"1000"})
 
@@ -110,8 +85,7 @@ class CloseTheLoopLiveTest(unittest.TestCase):
         self.assertEqual(process.returncode, 1, errors)
         self.assertIn("interrupted", errors)
         # The recorder closed the file; a recorder that is killed leaves a file without an end.
-        checked = run("verify", file)
-        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        self.run_verb("verify", file)
 
 
 if __name__ == "__main__":

@@ -11,32 +11,31 @@ import random
 import shutil
 import signal
 import subprocess
-import tempfile
-import unittest
 
 import lab_process
-from lab_process import wait_for
+from lab_process import STILLHAND, wait_for
+from verb_case import FolderCase
 
-STILLHAND = str(lab_process.STILLHAND)
 SHORT = ["--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3", "--repeats", "3"]
 DATA = os.environ.get("STILLHAND_DATA", lab_process.SOURCE.parent / "shared" / "data")
 METRICS = ("rms_error", "dwell_ratio", "crossover")
 
 
-def close_the_loop(*arguments, **options):
-    return subprocess.run([STILLHAND, "close-the-loop", *map(str, arguments)], capture_output=True, text=True,
-                          timeout=600, **options)
-
-
-class CloseTheLoopTest(unittest.TestCase):
+class LoopCase(FolderCase):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(temporary.cleanup)
-        self.out = pathlib.Path(temporary.name) / "loop"
+        super().setUp()
+        self.out = self.folder / "loop"
 
+    def assert_all_refused(self, *cases, then=()):
+        """(arguments, a word of the line) of each; nothing is left behind."""
+        for arguments, word in cases:
+            self.refused_for(word, "close-the-loop", *arguments, *then)
+            self.assertFalse(self.out.exists(), arguments)
+
+
+class CloseTheLoopTest(LoopCase):
     def summary(self, *arguments):
-        ran = close_the_loop(*SHORT, *arguments, "--out", self.out)
-        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.run_verb("close-the-loop", *SHORT, *arguments, "--out", self.out)
         return json.loads((self.out / "summary.json").read_text())
 
     def test_what_was_missing_is_found_and_makes_the_hand_stiller(self):
@@ -64,10 +63,7 @@ class CloseTheLoopTest(unittest.TestCase):
         self.assertEqual((summary["truth"]["kind"], summary["truth"]["channel"]), ("coupled_input", "a_x"))
         self.assertTrue(summary["truth"]["verdict_right"])
         # The digests prove that the truth was there before, and that the verdict is the one it was opened for.
-        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
-                                 capture_output=True, text=True)
-        self.assertEqual(checked.returncode, 0, checked.stderr)
-        self.assertIn("verdict.json: OK", checked.stdout)
+        self.assertIn("verdict.json: OK", self.assert_sealed(self.out))
         self.assertEqual(json.loads((self.out / "verdict.json").read_text()), summary["verdict"])
         report = (self.out / "report.html").read_text()
         self.assertIn("coupled_input", report)
@@ -88,19 +84,14 @@ class CloseTheLoopTest(unittest.TestCase):
             file = self.out.parent / f"{name}.json"
             file.write_text(content)
             lab = self.out.parent / "lab"
-            ran = subprocess.run([STILLHAND, "lab", "--model", file, "--conditions", "C", "--headless", "--out", lab],
-                                 capture_output=True, text=True, timeout=60)
-            self.assertEqual(ran.returncode, 2, name)
-            self.assertEqual(ran.stderr.count("\n"), 1, ran.stderr)
-            self.assertIn(str(file), ran.stderr)
-            self.assertIn(word, ran.stderr)
+            line = self.refused("lab", "--model", file, "--conditions", "C", "--headless", "--out", lab)
+            self.assertIn(str(file), line)
+            self.assertIn(word, line)
             self.assertFalse(lab.exists())
         pipe = self.out.parent / "pipe"
         os.mkfifo(pipe)  # no process writes to it, so that reading it would never end
         for verb in (["lab", "--out", lab, "--headless", "--model"], ["diagnose"], ["info"], ["identify"]):
-            ran = subprocess.run([STILLHAND, *verb, pipe], capture_output=True, text=True, timeout=20)
-            self.assertEqual(ran.returncode, 2, verb)
-            self.assertIn("not a regular file", ran.stderr)
+            self.refused_for("not a regular file", *verb, pipe, timeout=20)
 
     def test_without_an_effect_nothing_is_named_and_nothing_is_worse(self):
         summary = self.summary()
@@ -117,9 +108,7 @@ class CloseTheLoopTest(unittest.TestCase):
         summary = self.summary("--undeclared-effect", 4, "--off-catalogue")
         self.assertGreater(summary["truth"]["force_rms_n"], 0.0)
         self.assertGreater(summary["truth"]["detectable_n"], 0.0)
-        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
-                                 capture_output=True, text=True)
-        self.assertEqual(checked.returncode, 0, checked.stderr)
+        self.assert_sealed(self.out)
 
     def test_wrong_words_are_refused_before_anything_runs(self):
         taken = self.out.parent / "file"
@@ -127,7 +116,7 @@ class CloseTheLoopTest(unittest.TestCase):
         recorded = self.out.parent / "recorded"
         recorded.mkdir()
         (recorded / "session.mcap").write_text("mine\n")
-        for arguments, word in (([*SHORT, "--out", taken], "--out"),
+        self.assert_all_refused(([*SHORT, "--out", taken], "--out"),
                                 (["--trial-seconds", "1", "--out", self.out], "trial"),
                                 (["--identify-seconds", "nan", "--out", self.out], "identif"),
                                 (["--seed", "-4", "--out", self.out], "--seed"),
@@ -140,12 +129,7 @@ class CloseTheLoopTest(unittest.TestCase):
                                 (["--off-catalogue", "--out", self.out], "--undeclared-effect"),
                                 (["--subject", -1, "--out", self.out], "--subject"),
                                 (["--threads", 999, "--out", self.out], "--threads"),
-                                ([*SHORT], "--out")):
-            ran = close_the_loop(*arguments)
-            self.assertEqual(ran.returncode, 2, arguments)
-            self.assertEqual(ran.stderr.count("\n"), 1, ran.stderr)
-            self.assertIn(word, ran.stderr)
-            self.assertFalse(self.out.exists())
+                                ([*SHORT], "--out"))
         self.assertEqual(taken.read_text(), "mine\n")
         self.assertEqual([file.name for file in recorded.iterdir()], ["session.mcap"])
 
@@ -160,18 +144,12 @@ class CloseTheLoopTest(unittest.TestCase):
         self.assertFalse(self.out.exists())
 
 
-class FromRecordingsTest(unittest.TestCase):
+class FromRecordingsTest(LoopCase):
     """`--pegged`: two recordings of a stand that this test computes. f = body(a_y) + 1.5 kg body(a_x) + noise, body a
     second-order system of 3 Hz and damping ratio 0.4 with 3 N at 0 Hz for 1 m/s^2.
     """
     SECONDS, RATE_HZ, STEPS = 60, 100, 10
     CROSS_KG = 1.5
-
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
-        self.out = self.folder / "loop"
 
     def stand(self, name, seed):
         chance = random.Random(seed)
@@ -204,8 +182,7 @@ class FromRecordingsTest(unittest.TestCase):
 
     def test_the_effect_is_found_and_leaves_less_of_a_record_that_no_fit_has_seen(self):
         first, second = self.stand("first.csv", 1), self.stand("second.csv", 2)
-        ran = close_the_loop("--pegged", first, second, "--out", self.out)
-        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.run_verb("close-the-loop", "--pegged", first, second, "--out", self.out)
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertEqual((summary["verdict"]["kind"], summary["verdict"]["channel"]), ("coupled_input", "a_x"))
         self.assertTrue(summary["kept"])
@@ -223,8 +200,7 @@ class FromRecordingsTest(unittest.TestCase):
         self.assertEqual((self.out / "report.html").read_text().count("<svg"), 2)
 
         # With both accelerations as inputs the linear model lacks nothing.
-        ran = close_the_loop("--pegged", first, second, "--input", "a_y,a_x", "--out", self.folder / "both")
-        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.run_verb("close-the-loop", "--pegged", first, second, "--input", "a_y,a_x", "--out", self.folder / "both")
         both = json.loads((self.folder / "both" / "summary.json").read_text())
         self.assertEqual(both["inputs"], ["a_y", "a_x"])
         self.assertEqual(both["verdict"]["kind"], "none")
@@ -234,11 +210,8 @@ class FromRecordingsTest(unittest.TestCase):
         first, second = self.stand("first.csv", 1), self.stand("second.csv", 2)
         for options, conclusion in (((), "effects found"), (("--least-force", 50), "nothing missing")):
             out, verdict = self.folder / f"loop{len(options)}", self.folder / f"verdict{len(options)}.json"
-            for arguments in (["diagnose", first, "--json", verdict],
-                              ["close-the-loop", "--pegged", first, "--unseen", second, "--out", out]):
-                ran = subprocess.run([STILLHAND, *map(str, [*arguments, *options])], capture_output=True, text=True,
-                                     timeout=600)
-                self.assertEqual(ran.returncode, 0, ran.stderr)
+            self.run_verb("diagnose", first, "--json", verdict, *options)
+            self.run_verb("close-the-loop", "--pegged", first, "--unseen", second, "--out", out, *options)
             alone = json.loads(verdict.read_text())
             summary = json.loads((out / "summary.json").read_text())
             loop = summary["verdict"]
@@ -255,9 +228,8 @@ class FromRecordingsTest(unittest.TestCase):
         rides = [pathlib.Path(DATA) / "field" / f"arm_friction_ride_{each}.csv" for each in "ab"]
         if not all(ride.exists() for ride in rides):
             self.skipTest(f"no {rides[0]}; set STILLHAND_DATA")
-        ran = close_the_loop("--pegged", rides[0], "--unseen", rides[1], "--map", "Time (s)=t [s]", "Acc Y (g)=a_y [g]",
-                             "Force (lbf)=f [lbf]", "--out", self.out)
-        self.assertEqual(ran.returncode, 0, ran.stderr)
+        ran = self.run_verb("close-the-loop", "--pegged", rides[0], "--unseen", rides[1], "--map", "Time (s)=t [s]",
+                            "Acc Y (g)=a_y [g]", "Force (lbf)=f [lbf]", "--out", self.out)
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertEqual(summary["decided_on"], "motor")
         # Three springs explain this ride equally well, and rounding decides which is named; the canceller refuses one.
@@ -273,7 +245,7 @@ class FromRecordingsTest(unittest.TestCase):
         empty = self.folder / "empty.csv"
         empty.write_text("")
         copy = pathlib.Path(shutil.copy(first, self.folder / "copy.csv"))
-        for arguments, word in ((["--pegged", first, first], "--pegged"),
+        self.assert_all_refused((["--pegged", first, first], "--pegged"),
                                 (["--pegged", first, "--unseen", first], "--unseen"),
                                 (["--pegged", first, "--unseen", copy], "the same samples"),
                                 (["--pegged", self.folder / "none.csv"], "--pegged"),
@@ -285,12 +257,7 @@ class FromRecordingsTest(unittest.TestCase):
                                 (["--pegged", first, "--least-force", "nan"], "--least-force"),
                                 (["--pegged", first, "--live"], "--live"),
                                 (["--pegged", first, "--undeclared-effect", 3], "--undeclared-effect"),
-                                (["--cancelled", first], "--pegged")):
-            ran = close_the_loop(*arguments, "--out", self.out)
-            self.assertEqual(ran.returncode, 2, (arguments, ran.stderr))
-            self.assertEqual(ran.stderr.count("\n"), 1, ran.stderr)
-            self.assertIn(word, ran.stderr)
-            self.assertFalse(self.out.exists(), arguments)
+                                (["--cancelled", first], "--pegged"), then=("--out", self.out))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 
 With STILLHAND_SCREENSHOTS=FOLDER the test leaves pictures of every state, size and colour there.
 """
+import bisect
 import contextlib
 import http.server
 import os
@@ -166,11 +167,7 @@ class SessionTest(BrowserCase):
     def assert_no_force_behind(self, lab, tick, took_ms):
         recording = lab.recording(10**9, "signals")
         rig = recording["rig"]
-        stopped = next(i for i, permitted in enumerate(rig["motor_permitted"]) if rig["tick"][i] > tick and not permitted)
-        force = rig["motor_force_n"]
-        self.assertGreater(max(abs(each) for each in force[stopped - TICKS_PER_S:stopped]), 1.0)
-        zero = next(i for i in range(stopped, len(force)) if force[i] == 0.0)
-        self.assertEqual({*force[zero:]}, {0.0})
+        stopped, zero = self.assert_force_ends(rig, bisect.bisect_right(rig["tick"], tick))
         self.assertIn(["rig", "emergency stop"], recording["commands"])
         print(f"emergency stop shown after {took_ms:.0f} ms; from the rig's word on {rig['tick'][zero] - rig['tick'][stopped]} ms to no force")
 
@@ -233,10 +230,7 @@ class Refusal(http.server.BaseHTTPRequestHandler):
 
 class SignedOutTest(BrowserCase):
     def test_a_client_that_is_signed_out_is_shown_what_to_do(self):
-        file = self.folder / "token"
-        file.write_text(TOKEN + "\n")
-        file.chmod(0o600)
-        dashboard = self.dashboard("--domain", next_domain(), "--token-file", file)
+        dashboard = self.dashboard("--domain", next_domain(), "--token-file", self.token_file())
         page = self.open(dashboard, f"?token={TOKEN}")
         wait_for("its word", lambda: "No session" in page.text("word"))
         page.driver.delete_all_cookies()

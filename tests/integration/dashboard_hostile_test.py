@@ -5,7 +5,6 @@ import http.client
 import os
 import pathlib
 import resource
-import selectors
 import signal
 import socket
 import threading
@@ -100,10 +99,7 @@ class CrowdTest(ClientsCase):
         self.assertEqual(dashboard.ask("POST", "/emergency-stop")[0], 409)  # an answer: no rig is there
 
     def test_a_refused_client_that_stays_takes_no_place(self):
-        file = self.folder / "token"
-        file.write_text(TOKEN + "\n")
-        file.chmod(0o600)
-        dashboard = self.dashboard("--domain", next_domain(), "--token-file", file)
+        dashboard = self.dashboard("--domain", next_domain(), "--token-file", self.token_file())
         head = b"POST /emergency-stop HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
         strangers = [self.connected(dashboard, head + b"\r\n") for _ in range(MOST_CONNECTIONS)]
         self.assertEqual({self.status_of(client) for client in strangers}, {b"403"})
@@ -217,7 +213,6 @@ class HostileClientsTest(ClientsCase):
         honest.start()
         began = time.monotonic()
         crowd, worst = [], 0
-        arriving = selectors.DefaultSelector()
         for i in range(min(CONNECTIONS, most - 500)):
             client = socket.socket()
             client.setblocking(False)
@@ -229,7 +224,6 @@ class HostileClientsTest(ClientsCase):
                 worst = max(worst, descriptors(dashboard.process.pid))
         took_s = time.monotonic() - began
         asked, answered = honest.asked, honest.answered
-        arriving.close()
         self.assertLess(worst, MOST_CONNECTIONS + 50)
         # With all of them still there.
         self.assertEqual(dashboard.ask("GET", "/snapshot")[0], 200)
@@ -242,9 +236,7 @@ class HostileClientsTest(ClientsCase):
 
 class TokenTest(DashboardCase):
     def test_nothing_but_the_token_opens(self):
-        file = self.folder / "token"
-        file.write_text(TOKEN + "\n")
-        file.chmod(0o600)
+        file = self.token_file()
         dashboard = self.dashboard("--domain", next_domain(), "--token-file", file)
         wrong = ("", TOKEN[:-1], TOKEN + "0", TOKEN.upper(), TOKEN[::-1], " " + TOKEN, TOKEN + ";", "%30" + TOKEN[1:], "*", TOKEN[:8] + "\x00" + TOKEN[9:],
                  "a" * 7000, "../" + str(file), "Bearer " + TOKEN)

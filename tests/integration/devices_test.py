@@ -14,13 +14,12 @@ import signal
 import socket
 import statistics
 import struct
-import subprocess
 import threading
 import time
 
 import lab_process
 from emulated_laboratory import MAX_AGE_MS, PROGRAM, WATCHDOG_MS, EmulatedLaboratory
-from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, loose_settings, \
+from lab_process import TRIAL_LIMIT_S, LabTestCase, campaign, loose_settings, \
     next_domain, quick_session, wait_for
 
 # From a fault to the end of the torque. A host that lives notices by the age of the newest reply or by the drive's
@@ -253,8 +252,7 @@ class DevicesTest(DevicesCase):
         found = []
         for lab in (simulated, devices):
             file = lab.out / "admittance.json"
-            subprocess.run([STILLHAND, "identify", lab.out / "session.mcap", "--admittance", "--json", file],
-                           check=True, stdout=subprocess.DEVNULL)
+            self.run_verb("identify", lab.out / "session.mcap", "--admittance", "--json", file)
             found.append(json.loads(file.read_text()))
         self.assertLessEqual(found[1]["largest_motor_force_n"], PERTURBATION_PEAK_N)
         for name in ("admittance_m_n", "feedthrough_to_force_n_s2_m", "feedthrough_to_position_s2"):

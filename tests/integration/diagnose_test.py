@@ -5,20 +5,13 @@ recording's inputs; the report; wrong input."""
 import csv
 import json
 import math
-import pathlib
 import random
 import subprocess
-import tempfile
-import unittest
 
 import lab_process
+from verb_case import FolderCase
 
-STILLHAND = str(lab_process.STILLHAND)
 PLANTED = lab_process.BUILD / "tests" / "planted_recordings"
-
-
-def stillhand(*arguments):
-    return subprocess.run([STILLHAND, *map(str, arguments)], capture_output=True, text=True, timeout=600)
 
 
 def columns(path):
@@ -27,28 +20,16 @@ def columns(path):
     return {title.split(" [")[0]: [float(row[i]) for row in rows[1:]] for i, title in enumerate(rows[0])}
 
 
-class DiagnoseTest(unittest.TestCase):
-    def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
-
+class DiagnoseTest(FolderCase):
     def planted(self, kind):
         subprocess.run([str(PLANTED), "--out", str(self.folder / kind), "--count", "1", "--seed", "7", "--kind", kind,
                         "--strength", "0.25", "--snr", "40", "--length", "60"], check=True, capture_output=True, timeout=120)
         return next((self.folder / kind).glob("*.csv"))
 
-    def refused(self, *arguments):
-        run = stillhand(*arguments)
-        self.assertEqual(run.returncode, 2, run.stderr + run.stdout)
-        self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
-        return run.stderr
-
     def test_a_planted_effect_is_named_saved_and_predicted(self):
         recording = self.planted("coupled_input")
         out, model, report = self.folder / "out.json", self.folder / "model.json", self.folder / "report"
-        run = stillhand("diagnose", recording, "--json", out, "--save", model, "--report", report)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("diagnose", recording, "--json", out, "--save", model, "--report", report)
         verdict = json.loads(out.read_text())
         self.assertEqual(verdict["verdict"], "effects found")
         self.assertEqual(verdict["effects"][0]["kind"], "coupled_input")
@@ -58,8 +39,7 @@ class DiagnoseTest(unittest.TestCase):
         self.assertLess(low, high)
         self.assertTrue(list(report.glob("*.html")))
         prediction = self.folder / "pred.csv"
-        run = stillhand("predict", model, recording, "--out", prediction)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("predict", model, recording, "--out", prediction)
         measured, predicted = columns(recording), columns(prediction)
         force = dict(zip(measured["t"], measured["f"]))
         self.assertEqual(list(predicted), ["t", "f_model", "f"])
@@ -74,15 +54,13 @@ class DiagnoseTest(unittest.TestCase):
         at = [title.split(" [")[0] for title in rows[0]].index("f")
         bare = self.folder / "bare.csv"
         bare.write_text("\n".join(",".join(row[:at] + row[at + 1:]) for row in rows) + "\n")
-        run = stillhand("predict", model, bare, "--out", self.folder / "bare_pred.csv")
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("predict", model, bare, "--out", self.folder / "bare_pred.csv")
         alone = columns(self.folder / "bare_pred.csv")
         self.assertEqual(alone, {name: predicted[name] for name in ("t", "f_model")})
 
     def test_nothing_planted_nothing_found(self):
         out = self.folder / "out.json"
-        run = stillhand("diagnose", self.planted("none"), "--json", out)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("diagnose", self.planted("none"), "--json", out)
         verdict = json.loads(out.read_text())
         self.assertEqual((verdict["verdict"], verdict["effects"], verdict["unexplained"]), ("nothing missing", [], None))
 
@@ -111,13 +89,12 @@ class DiagnoseTest(unittest.TestCase):
                 path = self.folder / f"{name}.csv"
                 path.write_text(text)
                 out = self.folder / f"{name}.json"
-                self.assertIn(said, self.refused("diagnose", path, "--json", out))
+                self.refused_for(said, "diagnose", path, "--json", out)
                 self.assertFalse(out.exists())
 
     def test_times_in_milliseconds_are_refused_by_every_verb(self):
         path, model = self.folder / "ms.csv", self.folder / "model.json"
-        run = stillhand("diagnose", self.planted("none"), "--most-effects", 0, "--save", model)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("diagnose", self.planted("none"), "--most-effects", 0, "--save", model)
         path.write_text("t [s],a_y [m/s^2],f [N]\n" + "".join(
             f"{10 * n},{math.sin(n * 0.37)},{math.cos(n * 0.11)}\n" for n in range(3000)))
         for words in (("diagnose", path), ("identify", path), ("predict", model, path, "--out", self.folder / "p.csv")):
@@ -125,8 +102,7 @@ class DiagnoseTest(unittest.TestCase):
                 said = self.refused(*words)
                 self.assertIn("ms.csv, time", said)
                 self.assertIn("=t [ms]", said)  # the line that mends it
-        run = stillhand("diagnose", path, "--most-effects", 0, "--map", "t [s]=t [ms]", "a_y=a_y", "f=f")
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("diagnose", path, "--most-effects", 0, "--map", "t [s]=t [ms]", "a_y=a_y", "f=f")
 
     def test_places_that_cannot_be_written_are_refused_before_anything_is_read(self):
         file, gone = self.folder / "file", self.folder / "gone.csv"
@@ -137,19 +113,19 @@ class DiagnoseTest(unittest.TestCase):
         # A recording that isn't there would be refused instead, were it read first.
         for option, place in wrong:
             with self.subTest(f"diagnose {option} {place}"):
-                self.assertIn(option, self.refused("diagnose", gone, option, place))
+                self.refused_for(option, "diagnose", gone, option, place)
         for option, place in wrong[4:]:
             with self.subTest(f"identify {option} {place}"):
-                self.assertIn(option, self.refused("identify", gone, option, place))
+                self.refused_for(option, "identify", gone, option, place)
         for place in (self.folder, self.folder / "no" / "p.csv", ""):
             with self.subTest(f"predict {place}"):
-                self.assertIn("--out", self.refused("predict", gone, gone, "--out", place))
+                self.refused_for("--out", "predict", gone, gone, "--out", place)
         self.assertEqual(file.read_text(), "earlier")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["file"])
 
     def test_a_recording_given_twice_is_refused(self):
         recording = self.planted("none")
-        self.assertIn("the same file", self.refused("diagnose", recording, recording.parent / "." / recording.name))
+        self.refused_for("the same file", "diagnose", recording, recording.parent / "." / recording.name)
 
     def test_broken_mcap_files_are_refused_in_one_line(self):
         for name, content in {"magic": b"\x89MCAP0\r\n", "half_magic": b"\x89MCAP", "noise": b"\x89MCAP0\r\n" + bytes(range(256)) * 20,
@@ -157,7 +133,7 @@ class DiagnoseTest(unittest.TestCase):
             with self.subTest(name):
                 path = self.folder / f"{name}.mcap"
                 path.write_bytes(content)
-                self.assertIn(path.name, self.refused("diagnose", path))
+                self.refused_for(path.name, "diagnose", path)
 
     def test_an_input_that_moves_nothing_explains_nothing(self):
         noise = random.Random(3)
@@ -171,13 +147,13 @@ class DiagnoseTest(unittest.TestCase):
                 path, out = self.folder / f"{name}.csv", self.folder / f"{name}.json"
                 path.write_text("t [s],a_y [m/s^2],f [N]\n" + "".join(
                     f"{n / 100},{of_sample(n)},{noise.gauss(0.0, 1.0)}\n" for n in range(6000)))
-                self.assertEqual(stillhand("diagnose", path, "--json", out).returncode, 0)
+                self.run_verb("diagnose", path, "--json", out)
                 self.assertEqual(json.loads(out.read_text())["effects"], [])
 
     def test_wrong_channels_and_models_are_refused(self):
         recording = self.planted("none")
-        self.assertIn("a_q", self.refused("diagnose", recording, "--input", "a_q"))
-        self.assertIn("the output", self.refused("diagnose", recording, "--input", "f"))
+        self.refused_for("a_q", "diagnose", recording, "--input", "a_q")
+        self.refused_for("the output", "diagnose", recording, "--input", "f")
         for name, text in {"broken.json": "{", "other.json": '{"format": "stillhand model"}', "list.json": "[]"}.items():
             with self.subTest(name):
                 (self.folder / name).write_text(text)
@@ -186,13 +162,11 @@ class DiagnoseTest(unittest.TestCase):
 
     def test_a_control_model_is_made_with_the_recording_that_was_diagnosed_alone(self):
         recording, other, model = self.planted("none"), self.folder / "other.csv", self.folder / "model.json"
-        run = stillhand("diagnose", recording, "--most-effects", "0", "--save", model)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("diagnose", recording, "--most-effects", "0", "--save", model)
         other.write_text("\n".join(recording.read_text().splitlines()[:-1]) + "\n")
         line = self.refused("control-model", model, other, "--save", self.folder / "control.json")
         self.assertIn(recording.name, line)
-        run = stillhand("control-model", model, recording, "--save", self.folder / "control.json")
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("control-model", model, recording, "--save", self.folder / "control.json")
 
 
 if __name__ == "__main__":

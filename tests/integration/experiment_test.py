@@ -5,7 +5,6 @@
 The campaign conducts twelve simulated participants, two of them killed and resumed, one excluded, and keeps the folder
 in STILLHAND_EXPERIMENT, if that is set.
 """
-import csv
 import hashlib
 import json
 import os
@@ -14,11 +13,11 @@ import re
 import shutil
 import signal
 import subprocess
-import tempfile
 
 from dashboard_test import Dashboard
 from lab_process import (INSPECT, STILLHAND, LabTestCase, campaign, loose_settings, main, next_domain, running,
                          wait_for)
+from sample_experiment import rows, stillhand
 
 SESSION_LIMIT_S = 300.0
 END_LIMIT_S = 60.0
@@ -26,11 +25,7 @@ END_LIMIT_S = 60.0
 
 def experiment(*words, status=0, typed=""):
     """Runs `stillhand experiment` to its end; returns (standard output, standard error)."""
-    done = subprocess.run([str(STILLHAND), "experiment", *map(str, words)], capture_output=True, text=True, check=False,
-                          timeout=SESSION_LIMIT_S, input=typed)
-    if done.returncode != status:
-        raise AssertionError(f"{words}: status {done.returncode}: {done.stdout}{done.stderr}")
-    return done.stdout, done.stderr
+    return stillhand("experiment", *words, status=status, input=typed)
 
 
 def journal(folder, code):
@@ -39,14 +34,6 @@ def journal(folder, code):
 
 def of_kind(entries, what):
     return [entry for entry in entries if entry["what"] == what]
-
-
-def metadata(file):
-    """Metadata records of a recording, {name: texts}."""
-    with tempfile.NamedTemporaryFile(suffix=".json") as info:
-        subprocess.run([str(STILLHAND), "info", str(file), "--json", info.name], capture_output=True, check=False)
-        records = json.loads(pathlib.Path(info.name).read_text())["metadata"]
-    return {record["name"]: record["texts"] for record in records}
 
 
 def tree(folder):
@@ -76,10 +63,8 @@ class ExperimentTestCase(LabTestCase):
     def augmented_model(self):
         """A file for C+: of an effect that the rig of close-the-loop holds, and that of the experiment does not."""
         loop = self.folder / "loop"
-        closed = subprocess.run([str(STILLHAND), "close-the-loop", "--undeclared-effect", "9", "--seed", "3",
-                                 "--trial-seconds", "5", "--identify-seconds", "30", "--out", str(loop)],
-                                capture_output=True, text=True, check=False, timeout=SESSION_LIMIT_S)
-        self.assertEqual(closed.returncode, 0, closed.stderr)
+        self.run_verb("close-the-loop", "--undeclared-effect", 9, "--seed", 3, "--trial-seconds", 5, "--identify-seconds", 30,
+                      "--out", loop)
         return loop / "control_model.json"
 
     def start(self, *words):
@@ -154,8 +139,8 @@ class SessionTest(ExperimentTestCase):
         digest = hashlib.sha256((self.study / "experiment.yaml").read_bytes()).hexdigest()
         for session in ("01", "02"):
             file = self.study / "participants" / "P02" / "sessions" / session / "session.mcap"
-            self.assertEqual(metadata(file)["stillhand.experiment"],
-                             {"participant": "P02", "digest": digest, "session": session})
+            records = {record["name"]: record["texts"] for record in self.info(file)["metadata"]}
+            self.assertEqual(records["stillhand.experiment"], {"participant": "P02", "digest": digest, "session": session})
         # The second session changes no file of the first.
         after = tree(self.study)
         for path, content in before.items():
@@ -172,10 +157,8 @@ class SessionTest(ExperimentTestCase):
         for path in texts:
             self.assertIsNone(word.search(path.read_text()), path)
         self.assertNotIn("assignment.json", os.listdir(self.study))
-        study = subprocess.run([str(STILLHAND), "study", "--sessions", str(self.study), "--out", str(self.folder / "report")],
-                               capture_output=True, text=True, check=False, timeout=END_LIMIT_S)
-        self.assertEqual(study.returncode, 2)
-        self.assertIn("an experiment that is still blinded", study.stderr)
+        self.refused_for("an experiment that is still blinded", "study", "--sessions", self.study, "--out",
+                            self.folder / "report")
         self.assertIn("blinded", experiment("status", self.study)[0])
         self.assertIn("P01 (not begun), P03 (not begun)",
                       experiment("unblind", self.study, "--reason", "the end", status=2)[1])
@@ -200,7 +183,7 @@ class SessionTest(ExperimentTestCase):
 
         def trials(task):
             files = sorted(out.glob(f"sub-P02/ses-*/beh/*_task-{task}_beh.tsv"))
-            return [row for file in files for row in csv.DictReader(file.read_text().splitlines(), delimiter="\t")]
+            return [row for file in files for row in rows(file, "\t")]
         completed = [row["condition"] for row in trials("tracking") if row["completed"] == "yes"]
         self.assertEqual(completed, opened["orders"]["P02"])
         journaled = [entry["dwell_ratio"] for entry in of_kind(journal(self.study, "P02"), "trial ended")
@@ -349,9 +332,8 @@ class ChosenModelTest(ExperimentTestCase):
             self.assertGreater(by_condition[condition], 0.4, condition)
         self.assertEqual(len(set(by_condition.values())), 4)  # a model of its own in each
         experiment("export", self.study, "--out", self.folder / "set", "--csv")
-        with open(self.folder / "set" / "trials.csv", encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual([row["condition [-]"] for row in rows if row["task [-]"] == "tracking"],
+        exported = rows(self.folder / "set" / "trials.csv")
+        self.assertEqual([row["condition [-]"] for row in exported if row["task [-]"] == "tracking"],
                          opened["orders"]["P01"])
 
 
@@ -380,10 +362,9 @@ class MitigationsTest(ExperimentTestCase):
         # Two people and trials of 8 s: only that what a mitigation takes away is not nothing.
         self.assertLess(errors["signal"], errors["B"])
         experiment("export", self.study, "--out", self.folder / "set", "--csv")
-        with open(self.folder / "set" / "trials.csv", encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual({row["condition [-]"] for row in rows if row["task [-]"] == "tracking"}, set(conditions))
-        self.assertEqual(sum(row["task [-]"] == "freestick" for row in rows), 2)
+        exported = rows(self.folder / "set" / "trials.csv")
+        self.assertEqual({row["condition [-]"] for row in exported if row["task [-]"] == "tracking"}, set(conditions))
+        self.assertEqual(sum(row["task [-]"] == "freestick" for row in exported), 2)
 
 
 class RefusalTest(ExperimentTestCase):
@@ -417,15 +398,11 @@ class CampaignTest(ExperimentTestCase):
     def judge_study(self):
         """The study of the recordings alone: eleven people, each with one trial of each condition."""
         out = self.study.parent / "report"
-        done = subprocess.run([str(STILLHAND), "study", "--sessions", str(self.study), "--out", str(out)],
-                              capture_output=True, text=True, check=False, timeout=SESSION_LIMIT_S)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        print(done.stdout)
+        print(self.run_verb("study", "--sessions", self.study, "--out", out).stdout)
         summary = json.loads((out / "summary.json").read_text())
         self.assertEqual(summary["recorded"]["left_out"], ["P05: excluded, felt sick"])
-        with open(out / "trials.csv", encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual({condition: sum(row["condition"] == condition for row in rows) for condition in "ABC"},
+        studied = rows(out / "trials.csv")
+        self.assertEqual({condition: sum(row["condition"] == condition for row in studied) for condition in "ABC"},
                          {"A": 11, "B": 11, "C": 11})  # without practice
         experiment("report", self.study)
         for name in ("summary.json", "trials.csv"):

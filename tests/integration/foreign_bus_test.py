@@ -11,8 +11,9 @@ import subprocess
 import unittest
 
 import lab_process
-from bus_case import CYCLONE_URI, LIMIT_S, Bus, stillhand
+from bus_case import CYCLONE_URI, LIMIT_S, Bus
 from lab_process import BUILD, SOURCE, STILLHAND, next_domain
+from verb_case import stillhand
 
 IDL = pathlib.Path(__file__).resolve().parent / "foreign" / "plant.idl"
 FAST_DDS = BUILD / "tests" / "plant_writer"

@@ -17,13 +17,14 @@ import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 import wave
 
 import numpy
 
 import lab_process
+from lab_process import STILLHAND
+from verb_case import SharedFolderCase, stillhand
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "interface"))
 import mcap_official_reader_test as official  # noqa: E402
@@ -41,17 +42,12 @@ try:
 except (ImportError, OSError):
     soundfile = None
 
-STILLHAND = str(lab_process.STILLHAND)
 RATE_HZ = 100
 ROWS = 3000
 MAP = ["--map", "time=t [s]", "acc=a_y [m/s^2]", "force=f [N]"]
 DAMAGED_EACH = 25
 LABVIEW = ("LabVIEW Measurement\t\r\nSeparator\tTab\r\nDecimal_Separator\t.\r\n***End_of_Header***\t\r\n\t\r\n"
            "Channels\t2\t\t\r\nSamples\t3000\t3000\t\r\n***End_of_Header***\t\t\t\r\n")
-
-
-def stillhand(*words, **keywords):
-    return subprocess.run([STILLHAND, *map(str, words)], capture_output=True, text=True, timeout=300, **keywords)
 
 
 def stamp(t):
@@ -80,25 +76,23 @@ def mark_class(item, name):
     attribute.write(numpy.array(name, dtype=f"S{len(name)}"), mtype=kind)
 
 
-class ForeignRecordingsTest(unittest.TestCase):
+class ForeignRecordingsTest(SharedFolderCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = pathlib.Path(holder.name)
+        super().setUpClass()
         cls.time, cls.acc, cls.force = draw()
         cls.own = cls.folder / "own.csv"
         cls.table(cls.own, "t [s],a_y [m/s^2],f [N]")
         cls.wanted = cls.identified(cls.own)
 
     @classmethod
-    def rows(cls):
+    def samples(cls):
         return zip(map(float, cls.time), map(float, cls.acc), map(float, cls.force))
 
     @classmethod
     def table(cls, path, header, separator=",", decimal=".", end="\n", encoding="utf-8", first=lambda t: repr(t)):
         lines = [header]
-        for t, acc, force in cls.rows():
+        for t, acc, force in cls.samples():
             cells = [first(t), repr(acc), repr(force)]
             lines.append(separator.join(cell.replace(".", decimal) for cell in cells))
         path.write_bytes((end.join(lines) + end).encode(encoding))
@@ -116,12 +110,6 @@ class ForeignRecordingsTest(unittest.TestCase):
 
     def assert_same(self, *words):
         self.assertEqual(self.identified(*words), self.wanted)
-
-    def refused(self, *words):
-        run = stillhand(*words)
-        self.assertEqual(run.returncode, 2, run.stderr + run.stdout)
-        self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
-        return run.stderr
 
     # Text
 
@@ -159,8 +147,8 @@ class ForeignRecordingsTest(unittest.TestCase):
         path = self.folder / "stated.csv"
         self.table(path, "time;acc;force", separator=";", decimal=",")
         self.assert_same(path, *MAP, "--separator", "semicolon", "--decimal", "comma")
-        self.assertIn("no rows of numbers", self.refused("identify", path, *MAP, "--separator", "tab"))
-        self.assertIn("--decimal: got 'x'", self.refused("identify", path, *MAP, "--decimal", "x"))
+        self.refused_for("no rows of numbers", "identify", path, *MAP, "--separator", "tab")
+        self.refused_for("--decimal: got 'x'", "identify", path, *MAP, "--decimal", "x")
 
     def test_the_refusal_holds_the_mapping_that_would_do(self):
         path = self.folder / "refused.csv"
@@ -178,8 +166,7 @@ class ForeignRecordingsTest(unittest.TestCase):
             lines[row] = lines[row].split(",")[0] + ",,"
         path.write_text("\n".join(lines))
         out = self.folder / "missing.json"
-        run = stillhand("identify", path, *MAP, "--json", out)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("identify", path, *MAP, "--json", out)
         self.assertIn("3 of 3000 rows lack a value", " ".join(json.loads(out.read_text())["notes"]))
 
     # MATLAB
@@ -194,7 +181,7 @@ class ForeignRecordingsTest(unittest.TestCase):
             self.assert_same(path, "--map", "time=t [s]", "log.acc=a_y", "log.force=f")
             self.assert_same(path, "--map", "time=t [s]", "both(:,1)=a_y", "both(:,2)=f [N]")
             self.assert_same(path, "--map", "both(:,1)=a_y", "both(:,2)=f [N]", "--sample-rate", 100)
-        self.assertIn("'log.acc=a_y [m/s^2]' 'log.force=f [N]'", self.refused("identify", path))
+        self.refused_for("'log.acc=a_y [m/s^2]' 'log.force=f [N]'", "identify", path)
 
     @unittest.skipIf(scipy is None, "SciPy is not installed")
     def test_matlab_cells_and_an_element_for_each_signal(self):
@@ -208,7 +195,7 @@ class ForeignRecordingsTest(unittest.TestCase):
         self.assert_same(path, "--map", "rec.X=t [s]", "rec.Y(17).Data=a_y", "rec.Y(40).Data=f [N]")
         self.assert_same(path, "--map", "cells{1}=t [s]", "cells{2}=a_y", "rec.Y(40).Data=f [N]")
         scipy.io.savemat(path, {"z": self.acc + 1j * self.force, "cube": numpy.zeros((50, 3, 3))})
-        self.assertIn("z (complex numbers), cube (3 dimensions)", self.refused("identify", path))
+        self.refused_for("z (complex numbers), cube (3 dimensions)", "identify", path)
 
     @unittest.skipIf(h5py is None, "h5py is not installed")
     def test_matlab_7_3(self):
@@ -265,16 +252,15 @@ class ForeignRecordingsTest(unittest.TestCase):
         self.assertAlmostEqual(packed["heldout"][key], self.wanted["heldout"][key], 6)
         self.assertIn("3000 values of 'run/t' and 200 of 'short'",
                       self.refused("identify", path, "--map", "run/t=t", "short=a_y"))
-        self.assertIn("no column of", self.refused("identify", path, "--map", "run/t=t", "elsewhere=a_y"))
+        self.refused_for("no column of", "identify", path, "--map", "run/t=t", "elsewhere=a_y")
         with h5py.File(path, "w") as file:
             file["pose"] = numpy.zeros(9, dtype=[("at", [("x", "f8")])])
-        self.assertIn("pose.at (a compound)", self.refused("identify", path))
+        self.refused_for("pose.at (a compound)", "identify", path)
 
     def test_our_own_exports_come_back(self):
         bag = self.ros_bag()
         mat, hdf5 = self.folder / "e.mat", self.folder / "e.h5"
-        run = stillhand("export", bag, "--mat", mat, "--hdf5", hdf5)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("export", bag, "--mat", mat, "--hdf5", hdf5)
         tables = [f"x{topic}" for topic in ("_imu_data", "_stick_wrench")]
         self.assert_same(hdf5, "--map", f"{tables[0]}/linear_acceleration_y=a_y", f"{tables[1]}/wrench_force_y=f",
                          "--sample-rate", RATE_HZ)
@@ -300,12 +286,11 @@ class ForeignRecordingsTest(unittest.TestCase):
         self.assertEqual(
             self.identified(path, "--map", "channel 1=a_y [m/s^2] * 49.05", "channel 2=f [N] * 40"),
             self.identified(table))
-        self.assertIn("--map 'channel 1=a_y [m/s^2]' 'channel 2=f [N]'", self.refused("identify", path))
+        self.refused_for("--map 'channel 1=a_y [m/s^2]' 'channel 2=f [N]'", "identify", path)
         whole = path.read_bytes()
         path.write_bytes(whole[: len(whole) * 2 // 3])
-        run = stillhand("identify", path, "--map", "channel 1=a_y [m/s^2] * 49.05", "channel 2=f [N] * 40", "--json",
-                        self.folder / "cut.json")
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("identify", path, "--map", "channel 1=a_y [m/s^2] * 49.05", "channel 2=f [N] * 40", "--json",
+                      self.folder / "cut.json")
         self.assertIn("cut off", " ".join(json.loads((self.folder / "cut.json").read_text())["notes"]))
 
     @unittest.skipIf(soundfile is None, "soundfile is not installed")
@@ -344,14 +329,13 @@ class ForeignRecordingsTest(unittest.TestCase):
                       ["predict", model, path, *MAP[:3], "--out", out],
                       ["control-model", model, path, *MAP, "--save", self.folder / "control.json"],
                       ["close-the-loop", "--pegged", path, *MAP, "--out", self.folder / "loop"]):
-            run = stillhand(*words)
-            self.assertEqual(run.returncode, 0, str(words[0]) + ": " + run.stderr)
+            self.run_verb(*words)
         self.assertGreater(len(out.read_text().splitlines()), 2900)
 
     def test_a_mapping_file_is_asked_for_and_written(self):
         path, mapping = self.folder / "asked.csv", self.folder / "ride.yaml"
         self.table(path, "when,acc,force")
-        self.assertIn("--map-file: got", self.refused("identify", path, "--map-file", mapping))
+        self.refused_for("--map-file: got", "identify", path, "--map-file", mapping)
         primary, secondary = pty.openpty()
         answers = ["", "acc [m/s^2]", "", ""]
         lab = subprocess.Popen([STILLHAND, "identify", str(path), "--map-file", str(mapping)], stdin=secondary,

@@ -12,14 +12,11 @@ import sys
 import tempfile
 import unittest
 
-from lab_process import next_domain
+from lab_process import BUILD, CTEST_SKIPPED, SOURCE, STILLHAND, next_domain
+from verb_case import VerbCase
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
-STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
 RECORDER = BUILD / "bin" / "stillhand-recorder"
 PUBLISH = BUILD / "tests" / "publish_samples"
-CTEST_SKIPPED = 77
 DISK_BYTES = 20_000_000
 FILLED_BYTES = 19_000_000  # before it begins: 1 MB is full after 3 s of 4 unpacked topics at 1 kHz
 END_LIMIT_S = 60.0
@@ -30,7 +27,7 @@ def run(*words):
     return subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
 
 
-class FullDiskTest(unittest.TestCase):
+class FullDiskTest(VerbCase):
     def setUp(self):
         self.disk = pathlib.Path(os.environ[INSIDE])
         for left in self.disk.iterdir():
@@ -73,40 +70,35 @@ class FullDiskTest(unittest.TestCase):
         self.fill(FILLED_BYTES)
         line = self.record_until_it_ends("--min-free-mb", "0.5")
         self.assertIn("left on the disk", line)
-        self.assertEqual(run(STILLHAND, "verify", self.disk / "a.mcap").returncode, 0)
+        self.run_verb("verify", self.disk / "a.mcap")
 
     def test_a_session_on_a_full_disk_says_so_and_keeps_what_was_recorded(self):
         # 16 MB are left alone by default: 3 MB hold some seconds of a session, and no first trial of 40 s.
         self.fill(1_000_000)
-        lab = run(STILLHAND, "lab", "--domain", self.domain, "--headless", "--out", self.disk / "run", "--trial-seconds",
-                  20, "--identify-seconds", 40)
-        self.assertEqual(lab.returncode, 1, lab.stderr)
+        lab = self.run_verb("lab", "--domain", self.domain, "--headless", "--out", self.disk / "run", "--trial-seconds", 20,
+                            "--identify-seconds", 40, status=1)
         self.assertIn("left on the disk", lab.stderr)
-        self.assertEqual(run(STILLHAND, "verify", self.disk / "run" / "session.mcap").returncode, 0)
+        self.run_verb("verify", self.disk / "run" / "session.mcap")
 
     def test_a_full_disk_is_announced_and_the_file_is_readable(self):
         self.fill(FILLED_BYTES)
         line = self.record_until_it_ends("--min-free-mb", "0")
         self.assertIn("No space left on device", line)
         file, out = self.disk / "a.mcap", self.out
-        told = run(STILLHAND, "info", file, "--json", out / "info.json")
-        self.assertEqual(told.returncode, 0, told.stderr)
+        told = self.run_verb("info", file, "--json", out / "info.json")
         info = json.loads((out / "info.json").read_text())
         self.assertGreater(info["messages"], 4000)
         # All of it but the chunk that did not fit.
         self.assertLess(info["lost_bytes"], 400_000)
         self.assertIn("cut off", told.stderr)
         # A copy finds no room next to the file, which stays.
-        there = run(STILLHAND, "recover", file)
-        self.assertEqual(there.returncode, 1, there.stderr)
-        self.assertIn("No space left on device", there.stderr)
+        self.assertIn("No space left on device", self.run_verb("recover", file, status=1).stderr)
         self.assertEqual(sorted(path.name for path in self.disk.iterdir()), ["a.mcap", "other"])
-        elsewhere = run(STILLHAND, "recover", file, "--out", out / "whole.mcap")
-        self.assertEqual(elsewhere.returncode, 0, elsewhere.stderr)
-        self.assertEqual(run(STILLHAND, "verify", out / "whole.mcap").returncode, 0)
+        self.run_verb("recover", file, "--out", out / "whole.mcap")
+        self.run_verb("verify", out / "whole.mcap")
         (self.disk / "other").unlink()
-        self.assertEqual(run(STILLHAND, "recover", file).returncode, 0)
-        self.assertEqual(run(STILLHAND, "verify", file).returncode, 0)
+        self.run_verb("recover", file)
+        self.run_verb("verify", file)
 
 
 def enter_namespace():

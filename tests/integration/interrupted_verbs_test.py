@@ -5,10 +5,10 @@ import pathlib
 import signal
 import subprocess
 import tempfile
-import unittest
 
 import lab_process
 from lab_process import BUILD, STILLHAND, wait_for
+from verb_case import FolderCase
 
 LOAD = BUILD / "tests" / "bus_load"
 # Seconds of work for either verb: 2 million messages, where a signal finds its way within milliseconds.
@@ -18,7 +18,7 @@ LIMIT_S = 180.0
 POLL_S = 0.01
 
 
-class InterruptedVerbsTest(unittest.TestCase):
+class InterruptedVerbsTest(FolderCase):
     @classmethod
     def setUpClass(cls):
         shared = tempfile.TemporaryDirectory(prefix="stillhand-")
@@ -26,11 +26,6 @@ class InterruptedVerbsTest(unittest.TestCase):
         cls.recording = pathlib.Path(shared.name) / "long.mcap"
         subprocess.run([str(LOAD), "--write", str(cls.recording), str(RATE), str(LENGTH_S)], check=True)
         os.truncate(cls.recording, cls.recording.stat().st_size - 1000)  # as a crash leaves it
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
 
     def assert_interrupted(self, wanted, piece, *words):
         """Interrupts the verb once `piece` (a pattern) has begun to grow."""

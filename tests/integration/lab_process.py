@@ -8,6 +8,7 @@ import fcntl
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -17,16 +18,17 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 
+from verb_case import BUILD, SOURCE, STILLHAND, FolderCase  # noqa: E402
 from waiting import POLL_S, hold, wait_for  # noqa: E402,F401  also for its users
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
-STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
 INSPECT = BUILD / "tests" / "inspect_recording"
+STRANGER = BUILD / "tests" / "stranger"
+EQUIVALENCE = BUILD / "tests" / "equivalence_live_recording"
 
 SERVICES = ("motion", "rig", "sensing", "cancellation", "display", "human_operator", "identification", "recorder")
 CTEST_SKIPPED = 77
 TICKS_PER_S = 1000
+FORCE_LIMIT_TICKS = 50  # the motor's force ramps to zero within 40 ticks, and a tick is at most 5 ms late, twice
 
 # How long a lab under test may take [s].
 MATCH_LIMIT_S = 30.0  # the lab itself gives up after 20 s
@@ -84,9 +86,9 @@ def shared_memory():
     return {name for name in os.listdir("/dev/shm") if "fast" in name or "stillhand" in name}
 
 
-def loose_settings(folder):
+def loose_settings(folder, origin=SOURCE / "deploy" / "config"):
     """A settings folder in which identification accepts the rough model that a pegged trial of 5 s gives."""
-    shutil.copytree(SOURCE / "deploy" / "config", folder)
+    shutil.copytree(origin, folder)
     (folder / "identification.yaml").write_text("max_conversion_error: 1.0\n")
     return folder
 
@@ -202,18 +204,50 @@ class LabProcess:
         self._errors.close()
 
 
-class LabTestCase(unittest.TestCase):
-    """A test with a folder of its own, in which no lab survives it."""
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+class LabTestCase(FolderCase):
+    """A test that no lab survives."""
 
     def lab(self, *arguments, out=None, **keywords):
         lab = LabProcess(self.folder / "run" if out is None else out, *arguments, **keywords)
         self.addCleanup(lab.close)
         return lab
+
+    def stranger(self, domain, *what):
+        """A program of no lab on a domain (stranger.cpp)."""
+        process = subprocess.Popen([str(STRANGER), str(domain), *what], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    @staticmethod
+    def heard(stranger):
+        """Ends a stranger; how many messages it received, and how many readers it had."""
+        stranger.terminate()
+        return tuple(int(number) for number in re.findall(r"\d+", stranger.communicate(timeout=10)[0]))
+
+    def assert_force_ends(self, rig, first):
+        """From the sample `first` on, the interlock opens, and the force that was there is soon zero and stays it.
+
+        Returns where the interlock is open, and where the force is zero.
+        """
+        force = rig["motor_force_n"]
+        opened = next((i for i in range(first, len(force)) if not rig["motor_permitted"][i]), None)
+        self.assertIsNotNone(opened, "the interlock stayed closed")
+        self.assertGreater(max(abs(each) for each in force[max(opened - TICKS_PER_S, 0):opened]), 1.0, "there was no force")
+        zero = next((i for i in range(opened, len(force)) if force[i] == 0.0), None)
+        self.assertIsNotNone(zero, "the recording ends before the force is zero")
+        self.assertLessEqual(rig["tick"][zero] - rig["tick"][opened], FORCE_LIMIT_TICKS)
+        self.assertEqual([each for each in force[zero:] if each != 0.0], [])
+        return opened, zero
+
+    def assert_same_in_one_process(self, lab, config, *answers, **environment):
+        """Bit for bit: the same cores in one process answer the session's inputs as its processes did."""
+        words = [str(EQUIVALENCE), "--gtest_filter=" + ":".join(f"*.{each}" for each in answers)]
+        environment |= {"STILLHAND_RECORDING": str(lab.out / "session.mcap"), "STILLHAND_CONFIG": str(config)}
+        replay = subprocess.run(words, env=os.environ | environment, capture_output=True, text=True, check=False)
+        print(*(line for line in replay.stdout.splitlines() if " compared, " in line), sep="\n", flush=True)
+        self.assertEqual(replay.returncode, 0, replay.stdout[-4000:])
+        self.assertIn(f"{len(answers)} tests from 1 test suite ran", replay.stdout)
 
     def assert_nothing_left(self, lab):
         self.assertEqual(lab.wait_until_alone(), {}, "processes left")

@@ -8,21 +8,14 @@ on an idle machine by 1 ms at most (apps/misses/RESULTS.md).
 import json
 import os
 import signal
-import subprocess
 import time
 
 import lab_process
-from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
+from lab_process import TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
 
 # Half a tick (Eq. MI-1), and the time from the signal until each thread stands, which grows with the machine's load.
 TOLERANCE_S = 0.01
 CAMPAIGN_TOLERANCE_S = 1e-3  # on an idle machine: half a tick, and as much again for the signals
-
-
-def misses(recording, *words):
-    result = recording.with_suffix(".misses.json")
-    out = subprocess.run([STILLHAND, "misses", recording, "--json", result, *words], capture_output=True, text=True)
-    return out, json.loads(result.read_text()) if out.returncode == 0 else None
 
 
 class MissesTest(LabTestCase):
@@ -42,10 +35,10 @@ class MissesTest(LabTestCase):
 
     def the_stop(self, service, length_s):
         recording, stopped_s = self.session_with_a_stop(service, length_s)
-        out, result = misses(recording)
-        self.assertEqual(out.returncode, 0, out.stderr)
-        found = max((miss for miss in result if miss["process"] == service), key=lambda miss: miss["gap_ms"],
-                    default=None)
+        file = recording.with_suffix(".misses.json")
+        out = self.run_verb("misses", recording, "--json", file)
+        found = max((miss for miss in json.loads(file.read_text()) if miss["process"] == service),
+                    key=lambda miss: miss["gap_ms"], default=None)
         self.assertIsNotNone(found, out.stdout)
         return found, stopped_s
 
@@ -63,9 +56,7 @@ class MissesTest(LabTestCase):
         for name, content in (("empty.mcap", b""), ("text.mcap", b"not a recording\n")):
             path = self.folder / name
             path.write_bytes(content)
-            out, _ = misses(path)
-            self.assertEqual(out.returncode, 2, out.stderr)
-            self.assertEqual(len(out.stderr.splitlines()), 1, out.stderr)
+            self.refused("misses", path)
 
     @campaign
     def test_ten_stops(self):

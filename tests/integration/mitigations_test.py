@@ -7,16 +7,16 @@ every mitigation that a session runs, in trials of 45 s, next to the study's row
 The table is printed; each share is within bounds of the study's 48 people, each motor's force within a factor of two of
 the same person's.
 """
-import csv
 import math
-import os
 import statistics
-import subprocess
 
-from lab_process import BUILD, STILLHAND, LabTestCase, campaign, loose_settings, main
+from lab_process import LabTestCase, campaign, loose_settings, main
+from verb_case import rows
 
-EQUIVALENCE = BUILD / "tests" / "equivalence_live_recording"
+CORES = ("CancellationAnswersTheSame", "DisplayAnswersTheSame", "IdentificationFindsTheSameModel",
+         "TheSimulatedSubjectAnswersTheSame")
 SESSION_LIMIT_S = 150.0
+STUDY_LIMIT_S = 1800.0
 SEED = 20261125
 MAX_FORCE_N = 25.0  # of the rig and of the canceller, deploy/config
 LIVE = ("low-pass", "notch", "model-filter", "signal", "lms-signal", "adaptive", "scheduled", "lms-force", "damping",
@@ -51,16 +51,6 @@ def share_bounds(people, moving):
 
 
 class MitigationsTest(LabTestCase):
-    def assert_same_in_one_process(self, lab, config):
-        """Bit for bit: what the canceller's process, the display and the identification answered."""
-        environment = {**os.environ, "STILLHAND_RECORDING": str(lab.out / "session.mcap"),
-                       "STILLHAND_CONFIG": str(config)}
-        words = [str(EQUIVALENCE), "--gtest_filter=*.CancellationAnswersTheSame:*.DisplayAnswersTheSame:"
-                 "*.IdentificationFindsTheSameModel:*.TheSimulatedSubjectAnswersTheSame"]
-        replay = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
-        print(*(line for line in replay.stdout.splitlines() if " compared, " in line), sep="\n", flush=True)
-        self.assertEqual(replay.returncode, 0, replay.stdout[-4000:])
-
     def test_two_mitigations_act_and_answer_the_same_in_one_process(self):
         config = loose_settings(self.folder / "config")
         lab = self.lab("--conditions", "B,signal,damping+force", "--identify-seconds", 6, "--trial-seconds", 6,
@@ -93,15 +83,12 @@ class MitigationsTest(LabTestCase):
         stick = [row[1] for row in signals["signal"]["stick"]]
         self.assertGreater(rms(taken_off["signal"]), 0.25 * rms(stick))
         self.assertEqual(set(taken_off["B"] + taken_off["damping+force"]), {0.0})
-        self.assert_same_in_one_process(lab, config)
+        self.assert_same_in_one_process(lab, config, *CORES)
 
     def test_a_wrong_name_is_refused_in_one_line_that_lists_them(self):
-        words = [STILLHAND, "lab", "--conditions", "B,signals", "--headless", "--out", self.folder / "none"]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 2)
-        self.assertEqual(len(done.stderr.splitlines()), 1)
+        line = self.refused("lab", "--conditions", "B,signals", "--headless", "--out", self.folder / "none")
         for name in LIVE:
-            self.assertIn(name, done.stderr)
+            self.assertIn(name, line)
 
     def arm(self, task):
         """The fitted arm of the person in a task, from a session of its own."""
@@ -110,8 +97,7 @@ class MitigationsTest(LabTestCase):
                        "--config", loose_settings(self.folder / f"config_{task}"), out=self.folder / task)
         self.assertEqual(lab.end_status(300.0), 0, lab.errors())
         found = self.folder / f"{task}.json"
-        subprocess.run([STILLHAND, "identify", lab.out / "session.mcap", "--admittance", "--json", found], check=True,
-                       stdout=subprocess.DEVNULL)
+        self.run_verb("identify", lab.out / "session.mcap", "--admittance", "--json", found)
         return found
 
     @campaign
@@ -119,12 +105,11 @@ class MitigationsTest(LabTestCase):
         # First the study: it chooses the parameters on the same other people as the lab's own (SU-18).
         study = self.folder / "study"
         names = ",".join(("force", *LIVE))
-        subprocess.run([STILLHAND, "study", "--mitigations", names, "--subjects", "48", "--seed", str(SEED),
-                        "--trial-seconds", "45", "--out", study], check=True, stdout=subprocess.DEVNULL)
-        with open(study / "mitigation_people.csv", encoding="utf-8") as file:
-            rows = [row for row in csv.DictReader(file) if row["task"] == "track" and row["motion"] == "0.7-2 Hz" and
-                    row["model"] in ("own", "none")]
-        inside = {row["mitigation"]: row for row in rows if row["person"] == "1"}
+        self.run_verb("study", "--mitigations", names, "--subjects", 48, "--seed", SEED, "--trial-seconds", 45, "--out", study,
+                      timeout=STUDY_LIMIT_S)
+        people = [row for row in rows(study / "mitigation_people.csv") if row["task"] == "track" and
+                  row["motion"] == "0.7-2 Hz" and row["model"] in ("own", "none")]
+        inside = {row["mitigation"]: row for row in people if row["person"] == "1"}
         self.assertLessEqual({"force", *LIVE}, set(inside))
         arms = [self.arm(task) for task in ("relax", "hold")]
         lab = self.lab("--conditions", ",".join(("A", "B", "C", *LIVE)), "--arms", ",".join(map(str, arms)),
@@ -141,13 +126,13 @@ class MitigationsTest(LabTestCase):
         for name, one in live.items():
             of_study = "force" if name == "C" else name
             with self.subTest(name):
-                low, high = share_bounds([row for row in rows if row["mitigation"] == of_study],
-                                         [row for row in rows if row["mitigation"] == "none"])
+                low, high = share_bounds([row for row in people if row["mitigation"] == of_study],
+                                         [row for row in people if row["mitigation"] == "none"])
                 self.assertTrue(low <= one["restored"] <= high, (low, one["restored"], high))
                 # The platform's RMS is fixed, so the force of a person's motor is too: twice or half is another loop.
                 motor_n = float(inside[of_study]["motor [N]"])
                 self.assertTrue(motor_n / 2 <= one["motor_n"] <= 2 * motor_n, (motor_n, one["motor_n"]))
-        self.assert_same_in_one_process(lab, lab.out / "logs" / "config")
+        self.assert_same_in_one_process(lab, lab.out / "logs" / "config", *CORES)
 
 
 if __name__ == "__main__":

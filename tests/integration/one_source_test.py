@@ -5,15 +5,9 @@ It commands 25 N, a thousand times a second: the rig takes motor commands from t
 second writer opens the interlock, and an event with its name is recorded. Or it reports in the rig's name that the
 trial is over and the interlock open: the lab takes a process's word from its participant alone.
 """
-import json
-import signal
-import subprocess
-
 import lab_process
-from lab_process import BUILD, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, quick_session
+from lab_process import STRANGER, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, quick_session
 
-STRANGER = BUILD / "tests" / "stranger"
-FORCE_LIMIT_TICKS = 50    # the motor force ramps to zero within 40 ticks, and the tick is at most 5 ms late, twice
 PUSHED_N = 25.0           # the stranger's command, and the limit of the motor
 # The canceller's own force in this session: 8.7 N at most in a run without a stranger. 20 N leaves twice that.
 OWN_FORCE_LIMIT_N = 20.0
@@ -24,19 +18,14 @@ class OneSourceTest(LabTestCase):
         """A stranger of this name next to the second second of the trial; returns the ended lab and its recording."""
         lab = self.lab(*quick_session(self.folder / "config"))
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
-        stranger = subprocess.Popen([str(STRANGER), str(lab.domain), "pushes", name], stdout=subprocess.PIPE, text=True)
-        self.addCleanup(stranger.kill)
+        stranger = self.stranger(lab.domain, "pushes", name)
         self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1, lab.errors())
-        stranger.send_signal(signal.SIGTERM)
-        heard = int(stranger.communicate(timeout=10)[0].split()[-1])
+        _, readers = self.heard(stranger)
         self.assert_nothing_left(lab)
         # Rig and recorder did match it: the rig had its commands, and did not use them.
-        self.assertGreaterEqual(heard, 2)
+        self.assertGreaterEqual(readers, 2)
         recording = lab.recording(10**9)
-        info = self.folder / "info.json"
-        subprocess.run([str(STILLHAND), "info", str(lab.out / "session.mcap"), "--json", str(info)], check=True,
-                       stdout=subprocess.DEVNULL)
-        written = {topic["topic"]: topic["messages"] for topic in json.loads(info.read_text())["topics"]}
+        written = {topic["topic"]: topic["messages"] for topic in self.info(lab.out / "session.mcap")["topics"]}
         self.assertGreater(written["stillhand/motor_command"], len(recording["rig"]["tick"]),
                            "the recording holds what the stranger wrote, too")
         return lab, recording
@@ -44,13 +33,8 @@ class OneSourceTest(LabTestCase):
     def test_a_program_that_commands_the_motor_moves_nothing_and_is_named(self):
         lab, recording = self.push_during_trial("a stranger")
         rig = recording["rig"]
-        force = rig["motor_force_n"]
-        opened = max(i for i, permitted in enumerate(rig["motor_permitted"]) if permitted) + 1
-        self.assertGreater(max(abs(f) for f in force[opened - TICKS_PER_S:opened]), 1.0)
-        self.assertLess(max(abs(f) for f in force), OWN_FORCE_LIMIT_N)
-        after = force[opened + FORCE_LIMIT_TICKS:]
-        self.assertGreater(len(after), 0, "the recording ends before the force is zero")
-        self.assertEqual([f for f in after if f != 0.0], [])
+        self.assert_force_ends(rig, max(i for i, permitted in enumerate(rig["motor_permitted"]) if permitted) + 1)
+        self.assertLess(max(abs(f) for f in rig["motor_force_n"]), OWN_FORCE_LIMIT_N)
         named = "a second writer of stillhand/motor_command: a stranger"
         self.assertTrue(any(source == "rig" and text.startswith(named) for source, text in recording["commands"]),
                         recording["commands"])
@@ -62,18 +46,15 @@ class OneSourceTest(LabTestCase):
     def test_a_program_that_reports_in_the_rigs_name_ends_no_trial(self):
         lab = self.lab(*quick_session(self.folder / "config"), "--trial-seconds", 10)
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
-        stranger = subprocess.Popen([str(STRANGER), str(lab.domain), "forges", "a stranger"], stdout=subprocess.PIPE,
-                                    text=True)
-        self.addCleanup(stranger.kill)
+        stranger = self.stranger(lab.domain, "forges", "a stranger")
         self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 0, lab.errors())
-        stranger.send_signal(signal.SIGTERM)
-        heard = int(stranger.communicate(timeout=10)[0].split()[-1])
+        _, readers = self.heard(stranger)
         trial = lab.summary()["trials"][-1]
         self.assertTrue(trial["completed"], trial)
         self.assertGreaterEqual(lab.recording(1)["rig"]["tick"][-1], trial["start_tick"] + 10 * TICKS_PER_S,
                                 "the trial ended before its time")
         # The five readers of the status matched it, the lab among them, and the two of the event.
-        self.assertGreaterEqual(heard, 7)
+        self.assertGreaterEqual(readers, 7)
         self.assertIn(("second writer", "stillhand/service_status", "a stranger"),
                       [(mark["what"], mark["topic"], mark["peer"]) for mark in trial["marks"]])
 

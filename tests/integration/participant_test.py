@@ -5,7 +5,6 @@ questions and the end, and takes answers from real keys and clicks. STILLHAND_SC
 
 The test knows from the journal and the recording what the screen has to show, and waits until its pixels change.
 """
-import csv
 import json
 import os
 import pathlib
@@ -20,6 +19,7 @@ import lab_process
 from dashboard_test import Dashboard
 from experiment_test import END_LIMIT_S, ExperimentTestCase, experiment, journal, of_kind
 from lab_process import STILLHAND, campaign, hold, next_domain, running, wait_for
+from verb_case import rows
 from virtual_display import VirtualDisplay, missing_tools
 
 TITLE = "Stillhand"
@@ -169,11 +169,8 @@ class ParticipantTestCase(ExperimentTestCase):
         file = sorted((self.study / "participants" / "P01" / "sessions").glob("*/session.mcap"))[-1]
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([str(STILLHAND), "export", str(file), "--csv", folder], capture_output=True, check=False)
-            tables = list(pathlib.Path(folder).glob("*prompt*.csv"))
-            if not tables:
-                return []
-            with open(tables[0], encoding="utf-8", newline="") as table:
-                return [{name.split(" [")[0]: text for name, text in row.items()} for row in csv.DictReader(table)]
+            return [{name.split(" [")[0]: text for name, text in row.items()}
+                    for table in pathlib.Path(folder).glob("*prompt*.csv") for row in rows(table)]
 
     def go_on(self, name):
         """Presses Enter on a page with a button that works."""
@@ -292,23 +289,22 @@ class AnswersTest(ParticipantTestCase):
         self.pad.press(Gamepad.SOUTH)
 
     def judge_prompts(self):
-        rows = self.prompts()
-        print("prompts:", [(row["kind"], row["trial"], row["steps"]) for row in rows], flush=True)
+        prompts = self.prompts()
+        print("prompts:", [(row["kind"], row["trial"], row["steps"]) for row in prompts], flush=True)
         # Instructions, the measurement, both trials with their question, the break, the last question, the end.
-        self.assertEqual(len({row["number"] for row in rows}), 9)
+        self.assertEqual(len({row["number"] for row in prompts}), 9)
         # A condition is in none of them, and no field is named like one.
-        for row in rows:
+        for row in prompts:
             self.assertNotIn("condition", " ".join([*row.keys(), *row.values()]))
 
     def judge_tables(self):
         experiment("unblind", self.study, "--reason", "the test's end")
         out = self.folder / "tables"
         experiment("export", self.study, "--out", out, "--csv")
-        with open(out / "answers.csv", encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        print(json.dumps(rows), flush=True)
+        answers = rows(out / "answers.csv")
+        print(json.dumps(answers), flush=True)
         self.assertEqual([[value for key, value in row.items() if key.startswith(("question", "answer"))]
-                          for row in rows], [["effort", "5"], ["effort", "2"], ["sick", "9"]])
+                          for row in answers], [["effort", "5"], ["effort", "2"], ["sick", "9"]])
 
 
 class KilledTest(ParticipantTestCase):

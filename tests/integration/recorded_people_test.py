@@ -193,19 +193,14 @@ class RecordedPeopleTest(SampleExperimentCase):
         self.assertEqual(simulated["subjects"], 2)
         self.assertEqual({row["subject"] for row in rows(out / "simulated.csv")}, {"1", "2"})
 
-    def refused(self, said, *words):
-        _, errors = stillhand(*words, status=2)
-        self.assertEqual(len(errors.splitlines()), 1, errors)
-        self.assertIn(said, errors)
-
     def test_options_without_recordings_are_refused(self):
-        self.refused("--sessions", "study", "--diagnose", "--out", self.folder / "none")
-        self.refused("--sessions", "study", "--simulated", "--out", self.folder / "none")
+        self.refused_for("--sessions", "study", "--diagnose", "--out", self.folder / "none")
+        self.refused_for("--sessions", "study", "--simulated", "--out", self.folder / "none")
         population = self.folder / "population.yaml"
         population.write_text("body_mass_kg: 60\n")
         words = ("study", "--sessions", self.experiment, "--population", population, "--out", self.folder / "none")
-        self.refused("--simulated", *words)
-        self.refused("an experiment draws its participants", *words, "--simulated")
+        self.refused_for("--simulated", *words)
+        self.refused_for("an experiment draws its participants", *words, "--simulated")
         self.assertFalse((self.folder / "none").exists())
 
     def test_a_session_without_a_and_a_condition_that_comes_once_are_named(self):
@@ -225,7 +220,7 @@ class RecordedPeopleTest(SampleExperimentCase):
         out = self.folder / "kept"
         stillhand("study", "--sessions", person, self.experiment / "participants" / "P02" / "sessions" / "01", "--out", out)
         before = {file.name: file.read_bytes() for file in out.iterdir() if file.is_file()}
-        self.refused("each code for one participant", "study", "--sessions", person, other, "--out", out)
+        self.refused_for("each code for one participant", "study", "--sessions", person, other, "--out", out)
         self.assertEqual({file.name: file.read_bytes() for file in out.iterdir() if file.is_file()}, before)
 
 

@@ -5,7 +5,7 @@ One session is recorded twice: by its own recorder and from outside. The recordi
 answers replays: its motor commands must be the recorded ones, bit for bit. Replayed onto the bus of another session, in
 the middle of a cancelled trial, the recording must take the motor's force away and must not replace it by another.
 """
-import csv
+import bisect
 import json
 import pathlib
 import signal
@@ -16,7 +16,6 @@ import lab_process
 from lab_process import BUILD, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session, wait_for
 
 COMPARE = BUILD / "tests" / "compare_commands"
-FORCE_LIMIT_TICKS = 50
 # Of the session's motor commands, at least so many are answered bit for bit.
 LEAST_EQUAL_SHARE = 0.95
 # A lost sample changes every answer after it. If one replay of the session loses a sample with probability p, three tries
@@ -94,14 +93,14 @@ class ReplayTest(LabTestCase):
         self.addCleanup(verb.close)
         return verb
 
-    def info(self, path):
+    def inspected(self, path):
         told = subprocess.run([str(lab_process.INSPECT), str(path), "1"], capture_output=True, text=True, check=True)
         return json.loads(told.stdout)
 
     def test_the_outside_recording_is_whole_and_the_session_runs_undisturbed(self):
         self.assertEqual(self.lab_status, 0, self.lab_errors)
         told = printed_counts(self.record_output)
-        found = self.info(self.outside)
+        found = self.inspected(self.outside)
         self.assertEqual(found["damage"], [])
         written = {topic: counts[3] for topic, counts in told.items() if counts[3] > 0}
         # inspect_recording knows the session's topics, and not the recorder's own remote control.
@@ -153,29 +152,23 @@ class ReplayTest(LabTestCase):
         self.assertGreaterEqual(equal, LEAST_EQUAL_SHARE * compared["live"])
         self.assertGreater(compared["greatest_force_n"], 1.0)  # a force was asked for at all
 
-    def rows(self, file, topic):
-        """Table of one topic, [{title: text}]; empty when no message of it was recorded."""
-        tables = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
-        told = tables / "info.json"
-        subprocess.run([str(STILLHAND), "info", str(file), "--json", str(told)], check=True, stdout=subprocess.DEVNULL)
-        if topic not in {entry["topic"] for entry in json.loads(told.read_text())["topics"]}:
+    def table(self, file, topic):
+        """Its rows, titles without units; none when no message of the topic was recorded."""
+        if topic not in {entry["topic"] for entry in self.info(file)["topics"]}:
             return []
-        subprocess.run([str(STILLHAND), "export", str(file), "--csv", str(tables), "--topics", topic], check=True,
-                       stdout=subprocess.DEVNULL)
-        with open(tables / (topic.replace("/", "_") + ".csv"), encoding="utf-8", newline="") as table:
-            return [{title.split(" [")[0]: cell for title, cell in row.items()} for row in csv.DictReader(table)]
+        return [{title.split(" [")[0]: cell for title, cell in row.items()} for row in self.rows(file, topic)]
 
-    def rows_so_far(self, file, topic):
-        """Like rows(), of a recording that is still written."""
+    def table_so_far(self, file, topic):
+        """Of a recording that is still written."""
         try:
-            return self.rows(file, topic)
-        except (subprocess.CalledProcessError, FileNotFoundError):  # no file yet, or none that can be read
+            return self.table(file, topic)
+        except AssertionError:  # no file yet, or none that can be read
             return []
 
     def test_behind_a_seek_the_bus_has_the_state_of_that_instant_and_no_event_from_before(self):
-        control = self.rows(self.session, "stillhand/trial_control")
-        first = int(self.rows(self.session, "stillhand/sensed")[0]["log_time"]) - int(
-            1e9 * float(self.rows(self.session, "stillhand/sensed")[0]["t"]))
+        control = self.table(self.session, "stillhand/trial_control")
+        first = int(self.table(self.session, "stillhand/sensed")[0]["log_time"]) - int(
+            1e9 * float(self.table(self.session, "stillhand/sensed")[0]["t"]))
         # Half a second after the last announcement of a trial: nothing of this topic follows soon.
         announced = [row for row in control if int(row["trial"]) >= 0][-1]
         at_s = (int(announced["log_time"]) - first) * 1e-9 + 0.5
@@ -190,17 +183,17 @@ class ReplayTest(LabTestCase):
             subprocess.run([str(STILLHAND), "replay", "--domain", str(domain), "--remote", command], check=True)
         # A wrong state or event would be published before the first samples that follow. An event of what follows may come
         # or not.
-        wait_for("half a second of samples behind the seek", lambda: len(self.rows_so_far(heard, "stillhand/sensed")) > 500,
+        wait_for("half a second of samples behind the seek", lambda: len(self.table_so_far(heard, "stillhand/sensed")) > 500,
                  TRIAL_LIMIT_S, poll_s=0.2)
         subprocess.run([str(STILLHAND), "replay", "--domain", str(domain), "--remote", "stop"], check=True)
         self.assertEqual(replay.end(), 0, replay.errors())
         recorder.interrupt()
-        self.assertEqual(self.rows(heard, "stillhand/trial_control")[0]["stamp_ns"], announced["stamp_ns"])
-        newest_before = [row for row in self.rows(self.session, "stillhand/sensed")
+        self.assertEqual(self.table(heard, "stillhand/trial_control")[0]["stamp_ns"], announced["stamp_ns"])
+        newest_before = [row for row in self.table(self.session, "stillhand/sensed")
                          if int(row["log_time"]) < int(announced["log_time"]) + 500_000_000][-1]
-        self.assertGreater(int(self.rows(heard, "stillhand/sensed")[0]["tick"]), int(newest_before["tick"]) - 10)
-        events = {int(row["stamp_ns"]) for row in self.rows(heard, "stillhand/event")}
-        before = {int(row["stamp_ns"]) for row in self.rows(self.session, "stillhand/event")
+        self.assertGreater(int(self.table(heard, "stillhand/sensed")[0]["tick"]), int(newest_before["tick"]) - 10)
+        events = {int(row["stamp_ns"]) for row in self.table(heard, "stillhand/event")}
+        before = {int(row["stamp_ns"]) for row in self.table(self.session, "stillhand/event")
                   if int(row["log_time"]) < int(announced["log_time"]) + 490_000_000}
         self.assertEqual(events & before, set())
 
@@ -215,19 +208,10 @@ class ReplayTest(LabTestCase):
         self.assertEqual(replay.interrupt(), 0, replay.errors())
         recording = lab.recording(10**6)
         rig = recording["rig"]
-        permitted = rig["motor_permitted"]
         start = next(entry["start_tick"] for entry in recording["trials"] if entry["number"] == 1)
-        first = next(i for i, tick in enumerate(rig["tick"]) if tick >= start)
-        forbidden = next((i for i in range(first, len(permitted)) if not permitted[i]), None)
-        self.assertIsNotNone(forbidden, "the rig went on as if no replay were there")
-        force = rig["motor_force_n"]
-        self.assertGreater(max(abs(f) for f in force[first:forbidden]), 1.0)
-        zero = next(i for i in range(forbidden, len(force)) if force[i] == 0.0)
-        print(f"force {force[forbidden - 1]:+.2f} N zero {rig['tick'][zero] - rig['tick'][forbidden]} ticks after the "
-              f"interlock opened, {len(force) - zero} ticks of it recorded", flush=True)
-        self.assertLessEqual(rig["tick"][zero] - rig["tick"][forbidden], FORCE_LIMIT_TICKS)
-        self.assertEqual([f for f in force[zero:] if f != 0.0], [])
-        self.assertFalse(any(permitted[forbidden:]))
+        forbidden, zero = self.assert_force_ends(rig, bisect.bisect_left(rig["tick"], start))
+        print(f"force zero {rig['tick'][zero] - rig['tick'][forbidden]} ticks after the interlock opened", flush=True)
+        self.assertFalse(any(rig["motor_permitted"][forbidden:]))
         marks = {(mark["source"], mark["what"]) for mark in lab.summary()["trials"][-1]["marks"]}
         self.assertIn(("rig", "interlock opened"), marks)
         self.assertTrue(any("a replay is on the bus" in line for line in lab.errors()), lab.errors())

@@ -9,10 +9,9 @@ import os
 import pathlib
 import re
 import signal
-import unittest
 
 import lab_process
-from bus_case import CYCLONE_URI, Bus, stillhand, wait_for
+from bus_case import CYCLONE_URI, Bus, wait_for
 from lab_process import BUILD, STILLHAND, next_domain
 
 READER = BUILD / "tests" / "ros2_reader"
@@ -69,9 +68,8 @@ class Ros2BridgeTest(Bus):
 
     def play(self, stretch, *words):
         begin_s, end_s = stretch
-        played = stillhand("replay", RECORDING, "--domain", self.domain, "--start", begin_s, "--end", end_s,
-                           "--no-real-time", "--wait-for", "stillhand/sensed", *words)
-        self.assertEqual(played.returncode, 0, played.stderr)
+        self.run_verb("replay", RECORDING, "--domain", self.domain, "--start", begin_s, "--end", end_s,
+                      "--no-real-time", "--wait-for", "stillhand/sensed", *words)
 
     def readers(self, bridge, *kinds):
         """Readers that the bridge's writers know and that know them: its topics are there since a first replay."""
@@ -181,9 +179,7 @@ class Ros2BridgeTest(Bus):
                 (("--domain", -1), "--domain: got -1, want 0 to 232"),
                 (("--ros-address", "192.0.2.1"), "--ros-address: got 192.0.2.1, which no interface of this"),
                 (("--profiles", "nowhere.xml"), "QoS profiles: got no file nowhere.xml")):
-            refused = stillhand("ros2-bridge", *words)
-            self.assertEqual((refused.returncode, len(refused.stderr.splitlines())), (2, 1), refused.stderr)
-            self.assertIn(want, refused.stderr)
+            self.refused_for(want, "ros2-bridge", *words)
 
 
 if __name__ == "__main__":

@@ -1,23 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """An experiment's folder with simulated participants, made in seconds and without a bus (write_sample_experiment.cpp)."""
-import csv
 import math
-import pathlib
 import re
 import subprocess
-import tempfile
-import unittest
 
-from lab_process import BUILD, STILLHAND
+import lab_process  # noqa: F401  first: it knows where verb_case is
+import verb_case
+from verb_case import BUILD, SharedFolderCase, rows  # noqa: F401  rows for its users
 
 WRITE_SAMPLE = BUILD / "tests" / "write_sample_experiment"
 LIMIT_S = 500.0  # next to other work
 
 
-def stillhand(*words, status=0):
+def stillhand(*words, status=0, **keywords):
     """Runs a verb to its end; returns (standard output, standard error)."""
-    done = subprocess.run([str(STILLHAND), *map(str, words)], capture_output=True, text=True, check=False,
-                          timeout=LIMIT_S)
+    done = verb_case.stillhand(*words, **keywords)
     if done.returncode != status:
         raise AssertionError(f"{words}: status {done.returncode}: {done.stdout}{done.stderr}")
     return done.stdout, done.stderr
@@ -41,12 +38,6 @@ def conduct(folder, *otherwise):
     subprocess.run([str(WRITE_SAMPLE), str(folder), *map(str, otherwise)], check=True, timeout=LIMIT_S)
 
 
-def rows(file):
-    """Of a CSV file, by the names of its columns."""
-    with open(file, encoding="utf-8", newline="") as text:
-        return list(csv.DictReader(text))
-
-
 def number(text):
     """Of a cell; an empty one is not a number."""
     return float(text) if text else math.nan
@@ -56,12 +47,10 @@ def unblind(folder):
     stillhand("experiment", "unblind", folder, "--reason", "Anna said so")
 
 
-class SampleExperimentCase(unittest.TestCase):
-    """Cases that share a folder, and in it the place of an experiment."""
+class SampleExperimentCase(SharedFolderCase):
+    """Cases that share the place of an experiment."""
 
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = pathlib.Path(holder.name)
+        super().setUpClass()
         cls.experiment = cls.folder / "experiment"

@@ -6,16 +6,14 @@ The stranger receives nothing and nobody hears it. Keys with a fault are refused
 """
 import math
 import os
-import re
 import shutil
 import subprocess
 
 import lab_process
 import network
-from lab_process import BUILD, END_LIMIT_S, SOURCE, LabTestCase, campaign, next_domain
+from lab_process import BUILD, END_LIMIT_S, SOURCE, STRANGER, LabTestCase, campaign, next_domain
 
 MAKE = SOURCE / "deploy" / "security" / "make.sh"
-STRANGER = BUILD / "tests" / "stranger"
 SESSION_LIMIT_S = 150
 WORDS = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "--seed", 2]
 # A secured session takes nearly all of two cores. One that falls behind ends by the interlock, as it should, and is
@@ -82,14 +80,10 @@ class SecuredSessionTest(LabTestCase):
         """
         def one_session(each):
             domain = next_domain()
-            stranger = subprocess.Popen([str(STRANGER), str(domain), stranger_does], stdout=subprocess.PIPE, text=True)
-            self.addCleanup(stranger.stdout.close)
-            self.addCleanup(stranger.wait)
-            self.addCleanup(stranger.kill)
+            stranger = self.stranger(domain, stranger_does)
             lab = self.lab(*WORDS, *words, domain=domain, out=self.folder / each)
             lab.end_status(SESSION_LIMIT_S)
-            stranger.terminate()
-            received, heard_by = (int(number) for number in re.findall(r"\d+", stranger.stdout.read()))
+            received, heard_by = self.heard(stranger)
             if "--security" in words:
                 self.assertEqual((received, heard_by), (0, 0), each)
             return lab, received

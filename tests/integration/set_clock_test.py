@@ -3,38 +3,27 @@
 
 The recorder alone runs with a clock (skewed_clock) that jumps; publish_samples sends a sample each millisecond.
 """
-import csv
 import os
-import pathlib
 import re
 import subprocess
-import tempfile
 import time
-import unittest
 
 import lab_process
-from lab_process import BUILD, STILLHAND, next_domain
+from lab_process import BUILD, next_domain
+from verb_case import FolderCase
 
 STEPS_S = (-3600.0, -0.25, 10.0)
 TOPIC = "stillhand/sensed"
 
 
-class SetClockTest(unittest.TestCase):
+class SetClockTest(FolderCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.domain = next_domain()
         publisher = subprocess.Popen([BUILD / "tests" / "publish_samples", "--domain", str(self.domain)],
                                      stdout=subprocess.DEVNULL)
         self.addCleanup(publisher.wait)
         self.addCleanup(publisher.kill)
-
-    def run_verb(self, *words, **keywords):
-        done = subprocess.run([str(STILLHAND), *map(str, words)], capture_output=True, text=True, check=False,
-                              timeout=120, **keywords)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
 
     def recorded_over(self, step_s):
         """A recording of 4 s, in whose middle the system clock jumps."""
@@ -49,14 +38,12 @@ class SetClockTest(unittest.TestCase):
         for step_s in STEPS_S:
             with self.subTest(step_s):
                 file = self.recorded_over(step_s)
-                said = self.run_verb("info", file)
+                said = self.run_verb("info", file).stdout
                 offset_ns = {when: int(ns) for when, ns in re.findall(r"clock_offset_ns at (start|end): (\d+)", said)}
                 # The clock did jump.
                 self.assertAlmostEqual(1e-9 * (offset_ns["end"] - offset_ns["start"]), step_s, 1)
-                self.run_verb("export", file, "--csv", self.folder / "tables")
-                with open(next((self.folder / "tables").glob("*sensed.csv")), newline="") as table:
-                    rows = list(csv.DictReader(table))
-                ticks = [int(row[next(name for name in row if name.startswith("tick"))]) for row in rows]
+                rows = self.rows(file, TOPIC)
+                ticks = [int(row["tick [-]"]) for row in rows]
                 times = [float(row["t [s]"]) for row in rows]
                 self.assertGreater(len(rows), 100)
                 self.assertEqual(ticks, sorted(ticks))

@@ -3,13 +3,13 @@
 
 The recording of a live session (fixture lab_run) gets the log times that this recorder would have given it.
 """
-import json
 import pathlib
 import signal
 
 import lab_process
-from bus_case import Bus, stillhand
+from bus_case import Bus
 from lab_process import BUILD, STILLHAND, next_domain
+from verb_case import stillhand
 
 RECORDING = pathlib.Path(BUILD / "tests" / "lab_run" / "session.mcap")
 STEP_CLOCK = BUILD / "tests" / "step_clock"

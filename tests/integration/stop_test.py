@@ -11,12 +11,11 @@ import os
 import selectors
 import socket
 import struct
-import subprocess
 import time
 
 import lab_process
-from dashboard_test import TOKEN, Dashboard
-from lab_process import STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
+from dashboard_test import TOKEN, DashboardCase
+from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, campaign, quick_session
 from virtual_display import VirtualDisplay, missing_tools
 
 FORCE_LIMIT_TICKS = 50  # the motor force ramps to zero within 40 ticks
@@ -63,7 +62,7 @@ def hostile_clients(port, ready):
                 come(key.data)
 
 
-class StopTest(LabTestCase):
+class StopTest(DashboardCase):
     def assert_stopped(self, lab, since_ns, what, forced):
         """The session ended by an emergency stop, with its force at zero; prints when."""
         self.assertEqual(lab.end_status(), 1, lab.errors())
@@ -87,9 +86,7 @@ class StopTest(LabTestCase):
         lab = self.lab(*quick_session(self.folder / "config"))
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
         since_ns = time.monotonic_ns()
-        stopped = subprocess.run([str(STILLHAND), "stop", "--domain", str(lab.domain)], capture_output=True, text=True,
-                                 timeout=30, check=False)
-        self.assertEqual(stopped.returncode, 0, stopped.stderr)
+        stopped = self.run_verb("stop", "--domain", lab.domain, timeout=30)
         self.assertRegex(stopped.stdout,
                          rf"^domain {lab.domain} rig 1: force zero \(\d+ ms to reach the rig\)\n$")
         print(stopped.stdout, end="", flush=True)
@@ -97,12 +94,8 @@ class StopTest(LabTestCase):
 
     @campaign
     def test_a_click_stops_the_motor_whatever_a_thousand_other_connections_send(self):
-        token = self.folder / "token"
-        token.write_text(TOKEN + "\n")
-        token.chmod(0o600)
         lab = self.lab(*quick_session(self.folder / "config"))
-        dashboard = Dashboard("--domain", lab.domain, "--token-file", token)
-        self.addCleanup(dashboard.process.kill)
+        dashboard = self.dashboard("--domain", lab.domain, "--token-file", self.token_file())
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
         ready = multiprocessing.Event()
         hostile = multiprocessing.Process(target=hostile_clients, args=(dashboard.port, ready), daemon=True)
@@ -131,9 +124,7 @@ class StopTest(LabTestCase):
             connection.close()
 
     def test_without_a_session_the_verb_fails_with_one_line(self):
-        stopped = subprocess.run([str(STILLHAND), "stop", "--domain", str(lab_process.next_domain()), "--wait", "2"],
-                                 capture_output=True, text=True, timeout=30, check=False)
-        self.assertEqual(stopped.returncode, 1)
+        stopped = self.run_verb("stop", "--domain", lab_process.next_domain(), "--wait", 2, status=1, timeout=30)
         self.assertRegex(stopped.stdout, "^domain [0-9]+ rig 1: no rig answers\n$")
 
     def test_a_key_of_an_input_device(self):

@@ -1,28 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """`stillhand study` as a user meets it: files, report, wrong input, a disk that fills, Ctrl-C."""
-import csv
 import html.parser
 import json
 import os
-import pathlib
 import re
 import resource
 import signal
 import subprocess
-import tempfile
-import unittest
 
 import lab_process
-from lab_process import wait_for
+from lab_process import STILLHAND, wait_for
+from verb_case import FolderCase, rows, stillhand
 
-STILLHAND = str(lab_process.STILLHAND)
-END_LIMIT_S = 1000  # a guard against a program that hangs
 SHORT = ["--subjects", "3", "--trial-seconds", "40", "--identify-seconds", "20", "--seed", "5"]
 
 
 def study(*arguments, **options):
-    return subprocess.run([STILLHAND, "study", *arguments], capture_output=True, text=True, timeout=END_LIMIT_S, **options)
+    return stillhand("study", *arguments, **options)
 
 
 class Tags(html.parser.HTMLParser):
@@ -39,20 +34,20 @@ class Tags(html.parser.HTMLParser):
                 self.loaded.append(value)
 
 
-class StudyTest(unittest.TestCase):
-    def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
+class StudyTest(FolderCase):
+    def assert_even_tables(self, page):
+        """No table has a row wider than its heading."""
+        for table in page.read_text().split("<table")[1:]:
+            head = len(re.findall("<th[ >]", table.split("</thead>")[0]))
+            for row in table.split("<tbody")[1].split("</tbody>")[0].split("<tr")[1:]:
+                self.assertEqual(len(re.findall("<t[dh][ >]", row)), head)
 
     # Trials of 30 s show that every part works, and nothing about the paper.
     BRIEF = ["--trial-seconds", "30", "--identify-seconds", "20", "--subjects", "6", "--seed", "5"]
 
     def test_explain_paper_ranks_every_cause_and_pair(self):
         out = self.folder / "why"
-        run = subprocess.run([STILLHAND, "study", "--explain-paper", *self.BRIEF, "--out", str(out)],
-                             capture_output=True, text=True, timeout=END_LIMIT_S)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("study", "--explain-paper", *self.BRIEF, "--out", out)
         found = json.loads((out / "explanation.json").read_text())
         names = [cause["name"] for cause in found["causes"]]
         self.assertEqual(names[:2], ["none", "paper_chain"])
@@ -72,45 +67,36 @@ class StudyTest(unittest.TestCase):
                          {"explanation.json", "report.html", "explain_ranking.svg", "explain_ranking.png",
                           "explain_tables.svg", "explain_tables.png", "explain_ranking.csv",
                           "explain_tables.csv"})
-        # No table has a row wider than its heading.
-        for table in (out / "report.html").read_text().split("<table")[1:]:
-            head = len(re.findall("<th[ >]", table.split("</thead>")[0]))
-            for row in table.split("<tbody")[1].split("</tbody>")[0].split("<tr")[1:]:
-                self.assertEqual(len(re.findall("<t[dh][ >]", row)), head)
+        self.assert_even_tables(out / "report.html")
 
     def test_calibrate_writes_a_population_that_the_study_takes(self):
         population = self.folder / "population.yaml"
-        run = study("--calibrate", *self.BRIEF, "--out", str(population))
-        self.assertEqual(run.returncode, 0, run.stderr)
+        run = self.run_verb("study", "--calibrate", *self.BRIEF, "--out", population)
         costs = [float(line.split("cost")[1]) for line in run.stdout.splitlines() if "cost" in line]
         self.assertGreater(len(costs), 1)
         self.assertLess(min(costs), costs[0])
-        again = study(*self.BRIEF, "--population", str(population), "--out", str(self.folder / "study"))
-        self.assertEqual(again.returncode, 0, again.stderr)
+        self.run_verb("study", *self.BRIEF, "--population", population, "--out", self.folder / "study")
 
     def test_mitigations_writes_the_table(self):
         out = self.folder / "table"
-        run = study("--mitigations", "force,damping", "--subjects", "3", "--trial-seconds", "6",
-                    "--identify-seconds", "20", "--seed", "5", "--out", str(out))
-        self.assertEqual(run.returncode, 0, run.stderr)
-        with (out / "mitigations.csv").open() as file:
-            rows = list(csv.DictReader(file))
+        self.run_verb("study", "--mitigations", "force,damping", "--subjects", "3", "--trial-seconds", "6",
+                      "--identify-seconds", "20", "--seed", "5", "--out", out)
+        table = rows(out / "mitigations.csv")
         # Nothing and damping once, the force with three models; three tasks and three motions.
-        self.assertEqual(len(rows), 9 * (1 + 1 + 3))
-        for row in rows:
+        self.assertEqual(len(table), 9 * (1 + 1 + 3))
+        for row in table:
             self.assertGreater(float(row["error [mm]"]), 0.0)
             self.assertLessEqual(float(row["harm low"]), float(row["harm"]))
             self.assertLessEqual(float(row["harm"]), float(row["harm high"]))
             moves = row["mitigation"] != "none"
             self.assertEqual(float(row["motor [N]"]) > 0.0, moves)
-        with (out / "mitigation_people.csv").open() as file:
-            people = list(csv.DictReader(file))
-        self.assertEqual(len(people), 3 * len(rows))
+        people = rows(out / "mitigation_people.csv")
+        self.assertEqual(len(people), 3 * len(table))
         # The table again, from its people: an error of another person, task or motion shows here.
         keys = ("task", "motion")
         without = {(*(one[key] for key in keys), one["person"]): float(one["error [mm]"]) for one in people
                    if one["mitigation"] == "none"}
-        for row in rows:
+        for row in table:
             cell = [one for one in people if all(one[key] == row[key] for key in (*keys, "mitigation", "model"))]
             errors = [float(one["error [mm]"]) for one in cell]
             bare = [without[(*(one[key] for key in keys), one["person"])] for one in cell]
@@ -129,17 +115,11 @@ class StudyTest(unittest.TestCase):
                          {"mitigations.csv", "mitigation_people.csv", "report.html",
                           *(f"mitigations_{task}.{ending}" for task in ("relax", "hold", "track")
                             for ending in ("svg", "png", "csv"))})
-        for table in (out / "report.html").read_text().split("<table")[1:]:
-            head = len(re.findall("<th[ >]", table.split("</thead>")[0]))
-            for row in table.split("<tbody")[1].split("</tbody>")[0].split("<tr")[1:]:
-                self.assertEqual(len(re.findall("<t[dh][ >]", row)), head)
+        self.assert_even_tables(out / "report.html")
         for words, why in ((["--mitigations", "magic"], "magic"),
                            (["--mitigations", "force", "--subjects", "1"], "--subjects"),
                            (["--mitigations", "force", "--conditions", "A,B"], "--conditions")):
-            run = study(*words, "--out", str(self.folder / "no"))
-            self.assertEqual(run.returncode, 2, words)
-            self.assertIn(why, run.stderr)
-            self.assertFalse((self.folder / "no").exists())
+            self.assert_not_studied([*words, "--out", self.folder / "no"], [why])
 
     def test_refuses_options_that_these_runs_cannot_use(self):
         for arguments, words in ((["--explain-paper", "--canceller", "paper"], "--canceller"),
@@ -147,17 +127,11 @@ class StudyTest(unittest.TestCase):
                                  (["--explain-paper", "--population", "p.yaml"], "--population"),
                                  (["--explain-paper", "--subjects", "5"], "want 6 or more"),
                                  (["--calibrate", "--subjects", "2"], "want 6 or more")):
-            out = self.folder / "nothing"
-            run = study(*arguments, "--out", str(out))
-            self.assertEqual(run.returncode, 2, run.stderr)
-            self.assertIn(words, run.stderr)
-            self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
-            self.assertFalse(out.exists())
+            self.assert_not_studied([*arguments, "--out", self.folder / "nothing"], [words])
 
     def test_writes_report_figures_numbers_and_summary(self):
         out = self.folder / "study"
-        run = study(*SHORT, "--conditions", "A,B,C,D,E,F", "--wrong-models", "--out", str(out))
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.run_verb("study", *SHORT, "--conditions", "A,B,C,D,E,F", "--wrong-models", "--out", out)
         summary = json.loads((out / "summary.json").read_text())
         for condition in "ABCDEF":
             for metric in ("rms_error_mm", "dwell_ratio", "crossover_hz"):
@@ -176,7 +150,7 @@ class StudyTest(unittest.TestCase):
 
     def test_report_needs_no_network(self):
         out = self.folder / "study"
-        self.assertEqual(study(*SHORT, "--out", str(out)).returncode, 0)
+        self.run_verb("study", *SHORT, "--out", out)
         text = (out / "report.html").read_text()
         page = Tags()
         page.feed(text)
@@ -187,23 +161,21 @@ class StudyTest(unittest.TestCase):
 
     def test_the_same_seed_writes_the_same_numbers(self):
         first, second = self.folder / "first", self.folder / "second"
-        study(*SHORT, "--threads", "1", "--out", str(first))
-        study(*SHORT, "--threads", "3", "--out", str(second))
+        study(*SHORT, "--threads", "1", "--out", first)
+        study(*SHORT, "--threads", "3", "--out", second)
         for path in first.glob("*.csv"):
             self.assertEqual(path.read_text(), (second / path.name).read_text(), path.name)
         self.assertEqual((first / "summary.json").read_text(), (second / "summary.json").read_text())
 
-    def refused(self, arguments, words, status=2):
+    def assert_not_studied(self, arguments, words):
         before = sorted(self.folder.rglob("*"))
-        run = study(*arguments)
-        self.assertEqual(run.returncode, status, run.stderr)
-        self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
+        line = self.refused("study", *arguments)
         for word in words:
-            self.assertIn(word, run.stderr)
+            self.assertIn(word, line)
         self.assertEqual(sorted(self.folder.rglob("*")), before)
 
     def test_wrong_input_is_one_line_and_leaves_nothing(self):
-        out = str(self.folder / "study")
+        out = self.folder / "study"
         people = self.folder / "people.yaml"
         people.write_text("grip_stiffness_n_m: -2400\n")
         misspelt = self.folder / "misspelt.yaml"
@@ -213,11 +185,11 @@ class StudyTest(unittest.TestCase):
             (["--subjects", "-3", "--out", out], ["--subjects"]),
             (["--subjects", "many", "--out", out], ["--subjects"]),
             (["--subjects", "3", "--conditions", "A,G", "--out", out], ['"G"', "F (arm rest)"]),
-            (["--subjects", "3", "--population", str(people), "--out", out],
+            (["--subjects", "3", "--population", people, "--out", out],
              ["people.yaml:1", "grip_stiffness_n_m", "500 to 8000"]),
-            (["--subjects", "3", "--population", str(misspelt), "--out", out],
+            (["--subjects", "3", "--population", misspelt, "--out", out],
              ["misspelt.yaml:1", "grip_stifness_n_m", "grip_stiffness_n_m"]),
-            (["--subjects", "3", "--population", str(self.folder / "none.yaml"), "--out", out], ["none.yaml"]),
+            (["--subjects", "3", "--population", self.folder / "none.yaml", "--out", out], ["none.yaml"]),
             (["--trial-seconds", "2", "--out", out], ["--trial-seconds", "5 to 3600"]),
             (["--subjects", "1", "--wrong-models", "--out", out], ["--wrong-models"]),
             (["--conditions", "A,B", "--wrong-models", "--out", out], ["--wrong-models", "C"]),
@@ -225,31 +197,31 @@ class StudyTest(unittest.TestCase):
         ]
         for arguments, words in cases:
             with self.subTest(arguments=arguments):
-                self.refused(arguments, words)
+                self.assert_not_studied(arguments, words)
 
     def test_a_folder_that_cannot_be_is_refused_before_the_work(self):
         a_file = self.folder / "taken"
         a_file.write_text("mine")
-        self.refused([*SHORT, "--out", str(a_file / "study")], ["--out", "taken"])
+        self.assert_not_studied([*SHORT, "--out", a_file / "study"], ["--out", "taken"])
         self.assertEqual(a_file.read_text(), "mine")
 
     def test_a_disk_that_fills_leaves_what_was_there(self):
         out = self.folder / "study"
-        self.assertEqual(study(*SHORT, "--out", str(out)).returncode, 0)
+        self.run_verb("study", *SHORT, "--out", out)
         before = {path.name: path.read_bytes() for path in out.iterdir()}
 
         def small_files_only():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (30_000, 30_000))
 
-        run = study(*SHORT, "--seed", "6", "--out", str(out), preexec_fn=small_files_only)
+        run = study(*SHORT, "--seed", "6", "--out", out, preexec_fn=small_files_only)
         self.assertEqual(run.returncode, 1, run.stderr)
         self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
         self.assertEqual({path.name: path.read_bytes() for path in out.iterdir()}, before)
 
     def test_interrupted_it_leaves_nothing(self):
         out = self.folder / "study"
-        run = subprocess.Popen([STILLHAND, "study", "--subjects", "500", "--out", str(out)],
+        run = subprocess.Popen([STILLHAND, "study", "--subjects", "500", "--out", out],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(run.kill)
         wait_for("work, of minutes, that has begun", lambda: list(out.glob(".unfinished-*")), 30.0, 0.01)
@@ -263,9 +235,9 @@ class StudyTest(unittest.TestCase):
         out = self.folder / "study"
         out.mkdir()
         (out / "notes.txt").write_text("mine")
-        study(*SHORT, "--wrong-models", "--out", str(out))
+        study(*SHORT, "--wrong-models", "--out", out)
         self.assertTrue((out / "fig07_traces.svg").exists())
-        self.assertEqual(study(*SHORT, "--conditions", "D,E", "--out", str(out)).returncode, 0)
+        self.run_verb("study", *SHORT, "--conditions", "D,E", "--out", out)
         self.assertFalse((out / "fig07_traces.svg").exists())
         self.assertFalse((out / "wrong_models.png").exists())
         self.assertEqual((out / "notes.txt").read_text(), "mine")
@@ -273,7 +245,7 @@ class StudyTest(unittest.TestCase):
     def test_a_folder_in_the_way_of_a_file_leaves_what_was_there(self):
         out = self.folder / "study"
         (out / "metrics.csv").mkdir(parents=True)
-        run = study(*SHORT, "--out", str(out))
+        run = study(*SHORT, "--out", out)
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertIn("metrics.csv", run.stderr)
         self.assertEqual([path.name for path in out.iterdir()], ["metrics.csv"])
@@ -290,20 +262,18 @@ class StudyTest(unittest.TestCase):
     def test_a_subject_that_no_rig_takes_is_told_before_the_study(self):
         people = self.folder / "people.yaml"
         people.write_text("seat_frequency_hz: 8\n")
-        self.refused(["--subjects", "500", "--population", str(people), "--out", str(self.folder / "study")],
-                     ["population", "subject", "seat_stiffness_n_m"])
+        self.assert_not_studied(["--subjects", "500", "--population", people, "--out", self.folder / "study"],
+                                ["population", "subject", "seat_stiffness_n_m"])
 
     def test_an_output_that_cannot_be_written_is_told(self):
         with open("/dev/full", "w") as full:
-            run = subprocess.run([STILLHAND, "study", *SHORT, "--out", str(self.folder / "study")], stdout=full,
-                                 stderr=subprocess.PIPE, text=True, timeout=END_LIMIT_S)
+            run = study(*SHORT, "--out", self.folder / "study", capture_output=False, stdout=full, stderr=subprocess.PIPE)
         self.assertEqual(run.returncode, 1)
         self.assertIn("standard output", run.stderr)
 
     def test_two_subjects_are_told_that_a_test_means_little(self):
         out = self.folder / "study"
-        run = study("--subjects", "2", "--trial-seconds", "20", "--identify-seconds", "20", "--out", str(out))
-        self.assertEqual(run.returncode, 0, run.stderr)
+        run = self.run_verb("study", "--subjects", "2", "--trial-seconds", "20", "--identify-seconds", "20", "--out", out)
         self.assertIn("a t-test over 2 participant", run.stderr)
         self.assertIn("proves little", (out / "report.html").read_text())
 

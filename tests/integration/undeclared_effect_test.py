@@ -12,7 +12,7 @@ import re
 import subprocess
 
 import lab_process
-from lab_process import BUILD, SERVICES, SOURCE, STILLHAND, LabTestCase, loose_settings, running
+from lab_process import BUILD, SERVICES, SOURCE, LabTestCase, loose_settings, running
 
 # Long enough not to come up by chance in a file; its effect acts on the pegged stick already.
 SEED = 90417733560021
@@ -26,11 +26,6 @@ MAY_INCLUDE = ("services/core/rig/", "services/files/rig/", "services/processes/
                "apps/close_the_loop/output.", "tests/")
 RECORDED_WITHOUT = BUILD / "tests" / "lab_run" / "session.mcap"  # ctest's fixture lab_run
 SESSION_LIMIT_S = 120
-
-
-def info(recording, out):
-    subprocess.run([str(STILLHAND), "info", str(recording), "--json", str(out)], check=True, capture_output=True)
-    return json.loads(out.read_text())
 
 
 def shape(value):
@@ -91,12 +86,11 @@ class UndeclaredEffectTest(LabTestCase):
         self.assertLessEqual(set(told), {"stillhand"})
 
         # Same topics, schemas and metadata.
-        self.assertEqual(shape(info(RECORDED_WITHOUT, self.folder / "plain.json")),
-                         shape(info(sealed.out / "session.mcap", self.folder / "sealed.json")))
+        info = self.info(sealed.out / "session.mcap")
+        self.assertEqual(shape(self.info(RECORDED_WITHOUT)), shape(info))
         csv = self.folder / "csv"
-        subprocess.run([str(STILLHAND), "export", str(sealed.out / "session.mcap"), "--csv", str(csv)], check=True,
-                       capture_output=True)
-        texts = [path.read_text() for path in csv.rglob("*.csv")] + [(self.folder / "sealed.json").read_text()]
+        self.run_verb("export", sealed.out / "session.mcap", "--csv", csv)
+        texts = [path.read_text() for path in csv.rglob("*.csv")] + [json.dumps(info)]
         texts += [path.read_text() for path in (sealed.out / "logs").iterdir()]
         texts += [(sealed.out / name).read_text() for name in ("summary.json", "model.json")]
         for text in texts:
@@ -108,9 +102,7 @@ class UndeclaredEffectTest(LabTestCase):
         truth = json.loads((sealed.out / "undeclared_effect.json").read_text())
         self.assertEqual(truth["seed"], SEED)
         self.assertIn(truth["kind"], KINDS + ("none",))
-        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=sealed.out,
-                                 capture_output=True, text=True, check=False)
-        self.assertEqual(checked.returncode, 0, checked.stdout)
+        self.assert_sealed(sealed.out)
         self.assertEqual(len((sealed.out / "undeclared_effect.sha256").read_text().splitlines()), 2)
         # Another truth would not pass.
         other = (sealed.out / "undeclared_effect.json").read_bytes().replace(b'"kind": "', b'"kind": "x')
