@@ -8,7 +8,6 @@ import html
 import html.parser
 import itertools
 import json
-import shutil
 import subprocess
 import sys
 
@@ -250,18 +249,6 @@ class RecordedConditionsTest(SampleExperimentCase):
             self.assertEqual(exported[row["participant"], row["session"], row["trial"]]["condition [-]"],
                              row["condition"])
 
-    def refused(self, said, *words):
-        _, errors = stillhand(*words, status=2)
-        self.assertEqual(len(errors.splitlines()), 1, errors)
-        self.assertIn(said, errors)
-
-    def test_bad_folders_are_named_in_one_line(self):
-        person = self.experiment / "participants" / "P01" / "sessions" / "01"
-        other = self.folder / "copy" / "01"
-        shutil.copytree(person, other)
-        self.refused("participant P01, session 01", "study", "--sessions", person, other, "--out", self.folder / "none")
-        self.assertFalse((self.folder / "none").exists())
-
     def test_a_model_that_changed_after_the_first_participant_is_named(self):
         model, digests = self.experiment / "plus.json", self.experiment / "experiment.sha256"
         whole, lines = model.read_text(), digests.read_text()
@@ -273,10 +260,10 @@ class RecordedConditionsTest(SampleExperimentCase):
 
         def all_refuse(said):
             for verb, *words in calls:
-                self.refused(said, "experiment", verb, self.experiment, *words)
+                self.refused_for(said, "experiment", verb, self.experiment, *words)
         model.write_text(whole.replace("1.5", "1.6", 1))
         all_refuse("plus.json: got SHA-256")
-        self.refused("the model of condition C+ changed after the first", "experiment", "status", self.experiment)
+        self.refused_for("the model of condition C+ changed after the first", "experiment", "status", self.experiment)
         model.unlink()
         all_refuse("plus.json: got no file")
         model.write_text(whole)
