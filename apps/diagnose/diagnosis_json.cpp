@@ -247,7 +247,11 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   }
   add("noise floor   {:.4g} {} ({:.4g} to {:.4g}), the estimated error of a perfect model\n",
       diagnosis.noise_floor.rmse, unit, diagnosis.noise_floor.low, diagnosis.noise_floor.high);
-  if (diagnosis.unexplained) add("unexplained   {}\n", diagnosis.unexplained->what);
+  if (diagnosis.unexplained) {
+    const bool searched = diagnosis.options.search.most_effects > 0;
+    add("unexplained   {}{}\n", diagnosis.unexplained->what,
+        searched ? "" : "; none was looked for (--most-effects 0)");
+  }
   for (const std::string& note : diagnosis.notes) add("note          {}\n", note);
   return text;
 }

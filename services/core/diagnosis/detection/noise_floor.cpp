@@ -66,13 +66,12 @@ void use_final_model(NoiseFloor& floor, const ErrorBounds& bounds) {
     floor.high = std::min(floor.high, std::max(bounds.impulse_response, floor.rmse));
   }
   floor.method =
-      "the residual of the final model. The part that tests of channels, state and time still "
-      "explain is subtracted, and the number of fitted values is corrected for. The interval ends "
-      "where that of the error on held-out blocks ends, or at the residual of a long impulse "
-      "response if this is lower";
+      "the residual of the final model, without the part that tests of channels, state and time "
+      "still explain, and corrected for the number of fitted values. Upper limit: that of the "
+      "held-out error, or the residual of a long impulse response, if this is lower";
   // Noise can't be more than is left: an estimate beyond that end says nothing.
   for (const NoiseEstimate& other : floor.estimates) floor.low = std::min(floor.low, other.rmse);
-  if (floor.estimates.size() > 1) floor.method += ". It begins at the lowest estimate";
+  if (floor.estimates.size() > 1) floor.method += ". Lower limit: the smallest estimate";
 }
 
 void use_repeats(NoiseFloor& floor, const Repeats& repeats, const Periodicity& periodicity,
