@@ -218,11 +218,22 @@ TEST(ReadTest, ATextIsRefused) {
               HasSubstr("got no rows of numbers"));
 }
 
+TEST(ReadTest, ACapitalThatIsAnotherChannelIsNoTime) {
+  std::string text = "t [s],F [N],T [K]\n";
+  for (int i = 0; i < 200; ++i) {
+    text += std::to_string(0.01 * i) + "," + std::to_string(i % 7) + ",293\n";
+  }
+  const Measurement sut = read_measurement(file_of(text));
+  ASSERT_EQ(sut.channels.size(), 2u);
+  EXPECT_EQ(sut.channels[0].name, "f");
+  EXPECT_EQ(sut.channels[1].name, "T");
+}
+
 // `stillhand export` writes all trials as one table.
 TEST(ReadTest, TheSamplesOfAWholeSessionAreRefused) {
   std::string text = "t [s],acquired_ns [ns],accel_y_m_s2 [m/s^2],force_n [N]\n";
   for (int i = 0; i < 200; ++i) {
-    text += "0." + std::to_string(1000 + i) + ",1,0." + std::to_string(i % 7) + ",1\n";
+    text += std::to_string(0.01 * i) + ",1,0." + std::to_string(i % 7) + ",1\n";
   }
   ReadOptions options;
   options.mapping.columns = {parse_wish("t=t [s]"), parse_wish("accel_y_m_s2=a_y [m/s^2]"),

@@ -199,7 +199,9 @@ Mapping mapping_of_titles(const TableHead& head, const Mapping& asked) {
     const std::string lower = lower_case(column.name);
     const bool is_time =
         (lower == "t" || lower == "time") && unit_conversion(column.unit, {}, "s").has_value();
-    std::string name = is_time ? "t" : !si_unit(lower).empty() ? lower : column.name;
+    // "F [N]" is f, but "T [K]" is no time.
+    const bool known = !si_unit(lower).empty() && unit_conversion(column.unit, {}, si_unit(lower));
+    std::string name = is_time ? "t" : known ? lower : column.name;
     const bool fits = si_unit(name).empty() || unit_conversion(column.unit, {}, si_unit(name));
     const bool twice = std::ranges::find(out.columns, name, &ColumnWish::name) != out.columns.end();
     if (column.unit.empty() || !fits || twice) return {};
