@@ -37,6 +37,18 @@ Series sum_of_lines(const Excitation& excitation, const Grid& grid, Draw& draw) 
   return out;
 }
 
+Series given(const Excitation& excitation, const Grid& grid) {
+  Series out(grid.size, 0.0);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double place = 1000.0 * (grid.time_s(i) - excitation.given_start_s);
+    const auto k = static_cast<std::size_t>(std::max(place, 0.0));
+    if (place < 0.0 || k + 1 >= excitation.given_m_s2.size()) continue;
+    const double part = place - static_cast<double>(k);
+    out[i] = (1.0 - part) * excitation.given_m_s2[k] + part * excitation.given_m_s2[k + 1];
+  }
+  return out;
+}
+
 }  // namespace
 
 Grid::Grid(double length_s, double sample_rate_hz) {
@@ -74,6 +86,7 @@ Excitation draw_excitation(Draw& draw, double length_s, double rate_hz) {
 }
 
 Series acceleration(const Excitation& excitation, const Grid& grid, Draw& draw) {
+  if (!excitation.given_m_s2.empty()) return given(excitation, grid);
   Series out = excitation.multisine ? sum_of_lines(excitation, grid, draw)
                                     : band_limited_noise(excitation, grid, draw);
   if (excitation.starts_at_rest) {

@@ -144,9 +144,10 @@ Losses disturb(std::uint64_t seed, std::uint64_t streams, const Spec& spec, cons
 
 /// The body and its effects on another ride.
 Recording again(std::uint64_t seed, std::uint64_t streams, Spec spec, const Body& body,
-                const std::vector<SizedEffect>& sized) {
+                const std::vector<SizedEffect>& sized, double first_force_rms_n) {
   if (spec.again_length_s > 0.0) spec.length_s = spec.again_length_s;
   if (spec.again_rate_hz > 0.0) spec.rate_hz = spec.again_rate_hz;
+  if (spec.again_excitation) spec.excitation = spec.again_excitation;
   Draw ride_draw(seed, streams + kRide);
   Draw channel_draw(seed, streams + kChannels);
   const Excitation excitation =
@@ -155,7 +156,7 @@ Recording again(std::uint64_t seed, std::uint64_t streams, Spec spec, const Body
   const Stand stand(body, scene);
   Series force_n = stand.force_n(sized);
   Truth truth;
-  truth.force_rms_n = spread_of(force_n);
+  truth.force_rms_n = spec.again_excitation ? first_force_rms_n : spread_of(force_n);
   const Losses losses = disturb(seed, streams, spec, stand, sized, force_n, truth);
   return recorded(scene, force_n, losses.lost);
 }
@@ -192,7 +193,7 @@ Draft draw_once(std::uint64_t seed, std::uint64_t round, const Spec& spec) {
   truth.excitation = excitation;
   const Losses losses = disturb(seed, streams, spec, stand, sized, force_n, truth);
   out.recording = recorded(scene, force_n, losses.lost);
-  if (spec.twice) out.again = again(seed, streams + kAgain, spec, body, sized);
+  if (spec.twice) out.again = again(seed, streams + kAgain, spec, body, sized, truth.force_rms_n);
   return out;
 }
 

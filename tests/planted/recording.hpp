@@ -30,6 +30,9 @@ struct Spec {
   bool twice = false;           ///< also Draft::again
   double again_length_s = 0.0;  ///< 0: as length_s
   double again_rate_hz = 0.0;   ///< 0: as rate_hz
+  /// None: as `excitation`.  With one, the noise has the newtons of the first recording, as a load
+  /// cell's has.
+  std::optional<Excitation> again_excitation = {};
 };
 
 /// Measured channels: a_y first, f last.

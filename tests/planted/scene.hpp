@@ -38,6 +38,10 @@ struct Excitation {
   double period_s = 0.0;         ///< multisine only
   std::vector<double> lines_hz;  ///< multisine only: odd harmonics, some omitted deliberately
   bool starts_at_rest = false;
+  /// A motion that is given, at 1 kHz from given_start_s on, at rest before and after it; the rest
+  /// above then counts for nothing.
+  std::vector<double> given_m_s2 = {};
+  double given_start_s = 0.0;
 };
 
 /// One signal over the whole grid.
