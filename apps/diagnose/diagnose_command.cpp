@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/diagnose/broken_tie.hpp"
 #include "apps/diagnose/diagnose_options.hpp"
 #include "apps/diagnose/diagnosis_json.hpp"
 #include "apps/diagnose/page/diagnosis_report.hpp"
@@ -38,6 +39,7 @@ struct Arguments {
   std::filesystem::path save;
   std::filesystem::path json;
   std::filesystem::path report;
+  std::filesystem::path plan;
   int stability = 0;
 };
 
@@ -54,7 +56,7 @@ void check_different(const std::vector<std::string>& recordings) {
   }
 }
 
-diagnosis::Measurement read_all(const Arguments& arguments) {
+std::vector<diagnosis::Measurement> read_all(const Arguments& arguments) {
   std::vector<diagnosis::Measurement> parts;
   measurement::ReadOptions read = arguments.read;
   read.channels = {arguments.options.inputs, arguments.options.output};
@@ -64,7 +66,20 @@ diagnosis::Measurement read_all(const Arguments& arguments) {
     parts.push_back(measurement::read_measurement(path, read));
     measurement::require_channels(parts.back(), names, read);
   }
-  return parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
+  return parts;
+}
+
+// The last recording is the run of the plan.
+std::optional<BrokenTie> tie_of(const Arguments& arguments,
+                                std::vector<diagnosis::Measurement> parts) {
+  if (arguments.plan.empty()) return std::nullopt;
+  if (parts.size() < 2) {
+    throw ConfigError("--plan", "one recording with it",
+                      "the recordings that left the tie, and then the run of the plan");
+  }
+  const diagnosis::Measurement run = std::move(parts.back());
+  parts.pop_back();
+  return broken_tie(next_run::read_plan(arguments.plan), measurement::join(std::move(parts)), run);
 }
 
 // Of one input; a mass is no sum of several.
@@ -92,7 +107,9 @@ int run(const Arguments& arguments) {
   const runtime::EndAfterStop end(stop, [&] {
     if (folder) folder->clear_away();
   });
-  const diagnosis::Measurement measurement = read_all(arguments);
+  std::vector<diagnosis::Measurement> parts = read_all(arguments);
+  const std::optional<BrokenTie> tie = tie_of(arguments, parts);
+  const diagnosis::Measurement measurement = measurement::join(std::move(parts));
   report::ProgressLine progress;
   diagnosis::DiagnoseOptions options = arguments.options;
   options.for_each = runtime::on_all_cores;
@@ -116,10 +133,13 @@ int run(const Arguments& arguments) {
     files.set_json("--save",
                    diagnosis::model_json(result.model, result.carried, result.baseline.model));
   }
-  if (files.wants("--json")) files.set_json("--json", diagnosis_json(result));
+  if (files.wants("--json")) {
+    files.set_json("--json", tie ? with_tie(diagnosis_json(result), *tie) : diagnosis_json(result));
+  }
   if (folder) write_report(result, measurement, arguments.recordings, *folder);
   files.publish();
   std::fputs(diagnosis_table(result).c_str(), stdout);
+  if (tie) std::fputs(tie_table(*tie).c_str(), stdout);
   folder ? report::say_report(arguments.report)
          : report::say_next("the same command with --report DIR draws what was found");
   if (result.no_model) {
@@ -167,6 +187,10 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   verb->add_option("--trial", arguments->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
   measurement::add_read_options(*verb, arguments->read);
+  verb->add_option("--plan", arguments->plan,
+                   "plan.json of `stillhand plan-run`: the last REC is its run, and the verb says "
+                   "which of the tied causes is left")
+      ->check(settings::check_name);
   verb->add_option("--save", arguments->save,
                    "file for the diagnosed model, for `stillhand predict`")
       ->check(settings::check_name);

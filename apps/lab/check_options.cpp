@@ -55,7 +55,8 @@ void refuse_with(const char* option, const std::vector<std::pair<const char*, bo
 }
 
 void check_combinations(const LabOptions& options) {
-  if ((options.protocol.motion == session::Motion::kRide) == options.ride.empty()) {
+  if (!options.protocol.planned &&
+      (options.protocol.motion == session::Motion::kRide) == options.ride.empty()) {
     throw ConfigError("--ride", options.ride.empty() ? "nothing" : options.ride.string(),
                       "a file with --motion ride, and no file without it");
   }
@@ -175,9 +176,11 @@ void check_values(const LabOptions& options) {
 motion::RideRecord ride_of(const LabOptions& options) {
   if (options.ride.empty()) return {};
   motion::RideRecord ride = motion::read_ride(options.ride.string());
-  if (ride.length_s() < options.protocol.trial_s) {
+  const session::ProtocolOptions& protocol = options.protocol;
+  const double wanted_s = protocol.planned ? protocol.identify_s : protocol.trial_s;
+  if (ride.length_s() < wanted_s) {
     throw ConfigError(options.ride.string(), fmt::format("{:f} s of ride", ride.length_s()),
-                      fmt::format("at least the --trial-seconds {:f}", options.protocol.trial_s));
+                      fmt::format("at least the trial's {:f}", wanted_s));
   }
   return ride;
 }

@@ -18,6 +18,7 @@
 #include "apps/lab/arms_file.hpp"
 #include "apps/lab/lab.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/files/next_run/plan_file.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/repeatable.hpp"
 
@@ -35,6 +36,7 @@ struct LabArguments {
   std::optional<std::string> road_class;
   std::optional<double> road_speed_m_s;
   std::string identify;
+  std::filesystem::path plan;
   std::optional<double> perturb_period_s;
   std::optional<std::string> task;
   bool held = false;
@@ -120,6 +122,13 @@ void add_trial_options(CLI::App& lab, LabOptions& options, LabArguments& argumen
          "move the free stick together; `stillhand identify --admittance` evaluates it")
       ->excludes(lab.get_option("--conditions"))
       ->check(CLI::IsMember({"admittance,feedthrough"}));
+  lab.add_option("--plan", arguments.plan,
+                 "instead of the conditions, the pegged trial alone in the motion that `stillhand "
+                 "plan-run` planned: its plan.json")
+      ->excludes(lab.get_option("--conditions"))
+      ->excludes(lab.get_option("--identify"))
+      ->excludes(lab.get_option("--identify-seconds"))
+      ->check(settings::check_name);
   lab.add_option("--perturb-period-s", arguments.perturb_period_s,
                  "with --identify: period of both multisines [s]; the trial holds a whole number "
                  "of periods, five or more [20]");
@@ -229,6 +238,15 @@ void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments
   lab.add_flag("--no-real-time", arguments.ordinary, "do not ask for real-time priority");
 }
 
+// The pegged trial alone, in the motion of the plan.
+void take_plan(const std::filesystem::path& path, LabOptions& options) {
+  const next_run::PlanFile plan = next_run::read_plan(path);
+  options.protocol.planned = true;
+  options.protocol.conditions.clear();
+  options.protocol.identify_s = plan.seconds;
+  options.ride = plan.ride;
+}
+
 void take_arguments(const LabArguments& arguments, LabOptions& options) {
   options.protocol.conditions = session::parse_conditions(arguments.conditions);
   const bool scheduled =
@@ -251,6 +269,7 @@ void take_arguments(const LabArguments& arguments, LabOptions& options) {
   take_perturbation(arguments, options);
   take_rig(arguments.rig, options);
   options.real_time = !arguments.ordinary;
+  if (!arguments.plan.empty()) take_plan(arguments.plan, options);
 }
 
 // What is left is what people use first.

@@ -49,6 +49,7 @@ Arguments motion_words(const LabOptions& options) {
   if (!options.vehicle.empty()) return {"--vehicle", options.vehicle};
   const session::ProtocolOptions& protocol = options.protocol;
   if (protocol.perturb_period_s != 0.0) return perturb_words(protocol);
+  if (protocol.planned) return {"--ride", options.ride.string()};
   switch (protocol.motion) {
     case session::Motion::kRide:
       return {"--ride", options.ride.string()};

@@ -20,6 +20,7 @@
 #include "apps/lab/conductor.hpp"
 #include "apps/lab/lab_command.hpp"
 #include "apps/misses/misses_command.hpp"
+#include "apps/plan_run/plan_run_command.hpp"
 #include "apps/predict/predict_command.hpp"
 #include "apps/record/record_command.hpp"
 #include "apps/recordings/recorder_commands.hpp"
@@ -63,6 +64,7 @@ int run(int argc, char** argv) {
     stillhand::vehicle::add_vehicle_command(cli, status);
     stillhand::identify::add_identify_command(cli, status);
     stillhand::diagnose::add_diagnose_command(cli, status);
+    stillhand::plan_run::add_plan_run_command(cli, status);
     stillhand::close_the_loop::add_closed_loop_command(cli, status);
     stillhand::close_the_loop::add_control_model_command(cli, status);
     stillhand::predict::add_predict_command(cli, status);

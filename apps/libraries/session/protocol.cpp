@@ -48,6 +48,15 @@ void check_road(const ProtocolOptions& options) {
   }
 }
 
+// It keeps its own intensity.
+void set_ride(PlannedTrial& planned) {
+  planned.motion = Motion::kRide;
+  planned.band_low_hz = kLowest_hz;
+  planned.band_high_hz = kHighest_hz;
+  planned.band_order = 0;
+  planned.rms_m_s2 = 0.0;
+}
+
 // Band and intensity of the motion in B and C.
 void set_tracking_motion(PlannedTrial& planned, const ProtocolOptions& options) {
   planned.motion = options.motion;
@@ -135,6 +144,7 @@ PlannedTrial identification_trial(const ProtocolOptions& options) {
   planned.peak_m_s2 = 0.75 * 9.80665;
   planned.rms_m_s2 = planned.peak_m_s2 / 3.8;
   planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, 0);
+  if (options.planned) set_ride(planned);
   return planned;
 }
 

@@ -19,6 +19,7 @@ struct ProtocolOptions {
   std::vector<Condition> conditions;
   double trial_s = 180.0;    ///< [s] measured length of a tracking trial; paper III-C
   double identify_s = 40.0;  ///< [s] pegged trial; the paper's is 120 s (III-A)
+  bool planned = false;      ///< the pegged trial alone, in the motion of a ride
   double ramp_s = 2.0;       ///< [s] motion and target fade in and out
   std::uint64_t seed = 1;    ///< of everything random
   Motion motion = Motion::kBandNoise;

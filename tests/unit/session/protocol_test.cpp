@@ -37,6 +37,22 @@ TEST(ProtocolTest, IdentificationComesFirstAndEachConditionOnce) {
   }
 }
 
+TEST(ProtocolTest, APlannedRunIsThePeggedTrialAloneInTheMotionOfARide) {
+  ProtocolOptions options;
+  options.planned = true;
+  options.identify_s = 30.0;
+  const auto trials = plan(options);
+  ASSERT_EQ(trials.size(), 1u);
+  EXPECT_EQ(trials[0].trial.phase, TrialPhase::kPegged);
+  const motion::MotionProfile sut = motion_profile(trials[0]);
+  EXPECT_EQ(sut.kind, motion::MotionKind::kRide);
+  EXPECT_EQ(sut.duration_ticks, 30'000);
+  EXPECT_EQ(sut.rms_m_s2, 0.0);
+  // The peak stays that of the pegged trial, the band that of a ride.
+  EXPECT_DOUBLE_EQ(sut.peak_m_s2, 0.75 * 9.80665);
+  EXPECT_DOUBLE_EQ(sut.band_high_hz, 6.0);
+}
+
 TEST(ProtocolTest, EveryOrderOccursAmongSeeds) {
   // Six orders; that one is missing among 200 fair shuffles has a chance below 6 (5/6)^200 = 1e-15.
   std::set<std::string> orders;

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan_run/plan_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <unsupported/Eigen/FFT>
+
+#include "services/core/recording/csv.hpp"
+#include "services/files/next_run/plan_file.hpp"
+
+namespace stillhand::plan_run {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::size_t count_of(const Planned& planned) { return planned.contest.candidates().size(); }
+
+std::string name_at(const Planned& planned, std::size_t i) {
+  return next_run::name_of(planned.contest.candidates()[i]);
+}
+
+// The direction that the run settles less often.
+double chance_between(const next_run::Plan& plan, std::size_t i, std::size_t j) {
+  const auto row = static_cast<Eigen::Index>(i);
+  const auto column = static_cast<Eigen::Index>(j);
+  return std::min(plan.chance(row, column), plan.chance(column, row));
+}
+
+ordered_json pairs_json(const Planned& planned) {
+  ordered_json pairs = ordered_json::array();
+  for (std::size_t i = 0; i < count_of(planned); ++i) {
+    for (std::size_t j = 0; j < count_of(planned); ++j) {
+      if (i == j) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto column = static_cast<Eigen::Index>(j);
+      pairs.push_back({{"true", i},
+                       {"rival", j},
+                       {"evidence_now", planned.contest.before().twice_log_ratio(row, column)},
+                       {"evidence_expected", planned.plan.separation(row, column)},
+                       {"probability_settled", planned.plan.chance(row, column)}});
+    }
+  }
+  return pairs;
+}
+
+ordered_json motion_json(const Planned& planned) {
+  const next_run::Design& design = planned.plan.design;
+  const motion::MotionReport& report = planned.plan.ride.motion.report();
+  return {{"family", next_run::in_words(design.family)},
+          {"band_hz", {design.low_hz, design.high_hz}},
+          {"rms_m_s2", report.rms_m_s2},
+          {"peak_m_s2", report.peak_m_s2},
+          {"largest_displacement_m", report.peak_position_m},
+          {"largest_velocity_m_s", report.peak_velocity_m_s},
+          {"quiet_share", design.quiet}};
+}
+
+ordered_json limits_json(const Planned& planned) {
+  const motion::PlatformLimits& limits = planned.bounds.limits;
+  const motion::MotionProfile& ride = planned.bounds.ride;
+  return {{"position_m", limits.max_position_m},
+          {"velocity_m_s", limits.max_velocity_m_s},
+          {"acceleration_m_s2", std::min(limits.max_acceleration_m_s2, ride.peak_m_s2)},
+          {"band_hz", {ride.band_low_hz, ride.band_high_hz}}};
+}
+
+// Amplitudes of the run's lines, a tenth of a hertz together.
+report::Series spectrum_of(const std::vector<double>& values, double rate_hz) {
+  constexpr double kBin_hz = 0.1;
+  constexpr double kHighest_hz = 10.0;
+  Eigen::FFT<double> transform;
+  std::vector<std::complex<double>> lines;
+  transform.fwd(lines, values);
+  const auto size = static_cast<double>(values.size());
+  std::vector<double> squares(static_cast<std::size_t>(kHighest_hz / kBin_hz), 0.0);
+  for (std::size_t k = 1; k < lines.size() / 2; ++k) {
+    const auto bin = static_cast<std::size_t>(static_cast<double>(k) * rate_hz / size / kBin_hz);
+    if (bin < squares.size()) squares[bin] += 2.0 * std::norm(lines[k]) / (size * size);
+  }
+  report::Series series;
+  for (std::size_t b = 0; b < squares.size(); ++b) {
+    series.x.push_back((static_cast<double>(b) + 0.5) * kBin_hz);
+    series.y.push_back(std::sqrt(squares[b]));
+  }
+  return series;
+}
+
+std::vector<double> difference(std::vector<double> one, const std::vector<double>& other) {
+  for (std::size_t n = 0; n < one.size(); ++n) one[n] -= other[n];
+  return one;
+}
+
+}  // namespace
+
+std::vector<std::string> advice_for(const next_run::Contest& contest, const next_run::Plan& plan,
+                                    const diagnosis::Signals& signals) {
+  constexpr double kOftenEnough = 0.5;
+  const auto& candidates = contest.candidates();
+  std::vector<std::string> advice;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    for (std::size_t j = i + 1; j < candidates.size(); ++j) {
+      if (chance_between(plan, i, j) >= kOftenEnough) continue;
+      for (const std::string& way : next_run::other_ways(candidates[i], candidates[j], signals)) {
+        std::string line = fmt::format("{} or {}: {}", next_run::name_of(candidates[i]),
+                                       next_run::name_of(candidates[j]), way);
+        advice.push_back(std::move(line));
+      }
+    }
+  }
+  return advice;
+}
+
+std::string plan_json(const Planned& planned) {
+  const diagnosis::Model& model = planned.contest.candidates().front().model;
+  ordered_json json{{"inputs", model.inputs},
+                    {"output", model.output},
+                    {"seconds", planned.seconds},
+                    {"probability_settled", planned.plan.probability_settled},
+                    {"probability_repeated", planned.plan.probability_repeated},
+                    {"ride", next_run::kRideName},
+                    {"motion", motion_json(planned)},
+                    {"limits", limits_json(planned)},
+                    {"designs_tried", planned.plan.tried},
+                    {"noise_rms", planned.contest.noise_rms()},
+                    {"advice", planned.advice},
+                    {"pairs", pairs_json(planned)}};
+  json["candidates"] = ordered_json::array();
+  for (const auto& candidate : planned.contest.candidates()) {
+    json["candidates"].push_back(next_run::json_of(candidate));
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string plan_table(const Planned& planned) {
+  const next_run::Plan& plan = planned.plan;
+  const motion::MotionReport& report = plan.ride.motion.report();
+  std::string text;
+  for (std::size_t i = 0; i < count_of(planned); ++i) {
+    const auto& candidate = planned.contest.candidates()[i];
+    text += fmt::format("{}    {}, error on unseen samples {:.4g} {}\n", i == 0 ? "tied" : "    ",
+                        name_at(planned, i), candidate.heldout_rmse, candidate.model.output_unit);
+  }
+  text += fmt::format(
+      "motion  {}, {:.2f} to {:.2f} Hz, {:.2f} m/s^2 RMS, peak {:.2f} m/s^2 and {:.3f} m, {:g} s\n",
+      next_run::in_words(plan.design.family), plan.design.low_hz, plan.design.high_hz,
+      report.rms_m_s2, report.peak_m_s2, report.peak_position_m, planned.seconds);
+  text += fmt::format("settles {:.0f} % (at least; the recorded motion for as long: {:.0f} %)\n",
+                      100.0 * plan.probability_settled, 100.0 * plan.probability_repeated);
+  for (const std::string& line : planned.advice) text += fmt::format("note: {}\n", line);
+  return text;
+}
+
+std::string ride_csv(const next_run::Ride& ride) {
+  recording::Recording table;
+  table.columns.push_back({"a_y", "m/s^2", ride.accel_m_s2});
+  for (std::size_t n = 0; n < ride.accel_m_s2.size(); ++n) {
+    table.time_s.push_back(static_cast<double>(n) / next_run::Ride::kRate_hz);
+  }
+  return recording::to_csv(table);
+}
+
+report::Figure plan_figure(const Planned& planned) {
+  constexpr std::array kColours{report::Colour::kAccent, report::Colour::kWarning,
+                                report::Colour::kConditionC, report::Colour::kConditionB};
+  const diagnosis::Measurement& run = planned.plan.run;
+  const diagnosis::Model& model = planned.contest.candidates().front().model;
+  const std::vector<double> time_s = run.time_s();
+  const std::vector<double>& motion = run.find(model.inputs.front())->values;
+  const std::vector<double> first = planned.contest.prediction(0, run);
+  const std::string unit = " [" + model.output_unit + "]";
+  report::Panel over_time{.title = "the motion",
+                          .x = {.label = "time [s]"},
+                          .y = {.label = model.inputs.front() + " [m/s²]"}};
+  over_time.series.push_back({.label = next_run::in_words(planned.plan.design.family),
+                              .colour = report::Colour::kMeasured,
+                              .x = time_s,
+                              .y = motion});
+  report::Panel motion_spectrum{.title = "its spectrum",
+                                .x = {.label = "frequency [Hz]"},
+                                .y = {.label = "RMS in 0.1 Hz [m/s²]"}};
+  motion_spectrum.series.push_back(spectrum_of(motion, run.rate_hz));
+  report::Panel apart{.title = "prediction less that of " + name_at(planned, 0),
+                      .x = {.label = "time [s]"},
+                      .y = {.label = model.output + unit}};
+  report::Panel apart_spectrum{.title = "spectrum of the difference",
+                               .x = {.label = "frequency [Hz]"},
+                               .y = {.label = "RMS in 0.1 Hz" + unit},
+                               .legend = report::Legend::kNone};
+  for (std::size_t i = 1; i < count_of(planned); ++i) {
+    const report::Colour colour = kColours[(i - 1) % kColours.size()];
+    const auto values = difference(planned.contest.prediction(i, run), first);
+    apart.series.push_back(
+        {.label = name_at(planned, i), .colour = colour, .x = time_s, .y = values});
+    report::Series lines = spectrum_of(values, run.rate_hz);
+    lines.colour = colour;
+    apart_spectrum.series.push_back(std::move(lines));
+  }
+  return {.name = "plan",
+          .panels = {over_time, motion_spectrum, apart, apart_spectrum},
+          .columns = 2,
+          .width_px = 1180,
+          .height_px = 620};
+}
+
+}  // namespace stillhand::plan_run

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan_run/plan_run_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/diagnose/diagnose_options.hpp"
+#include "apps/libraries/measurement/read_options.hpp"
+#include "apps/libraries/report/command_line.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
+#include "apps/libraries/report/progress.hpp"
+#include "apps/libraries/report/provenance.hpp"
+#include "apps/libraries/report/staged_folder.hpp"
+#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/session/protocol.hpp"
+#include "apps/plan_run/plan_results.hpp"
+#include "services/core/contract/config_error.hpp"
+#include "services/core/diagnosis/working_set.hpp"
+#include "services/core/motion/motion_generator.hpp"
+#include "services/files/next_run/plan_file.hpp"
+#include "services/files/settings/check_name.hpp"
+#include "services/files/settings/load.hpp"
+#include "services/system/process/run_jobs.hpp"
+#include "services/system/process/shipped.hpp"
+#include "services/system/process/stop.hpp"
+
+namespace stillhand::plan_run {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> recordings;
+  measurement::ReadOptions read;
+  diagnosis::DiagnoseOptions options;
+  double seconds = 30.0;
+  std::filesystem::path out;
+  std::filesystem::path config = runtime::shipped("deploy/config");
+};
+
+diagnosis::Measurement read_all(const Arguments& arguments) {
+  measurement::ReadOptions read = arguments.read;
+  read.channels = {arguments.options.inputs, arguments.options.output};
+  std::vector<std::string> names = arguments.options.inputs;
+  names.push_back(arguments.options.output);
+  std::vector<diagnosis::Measurement> parts;
+  for (const std::string& path : arguments.recordings) {
+    parts.push_back(measurement::read_measurement(path, read));
+    measurement::require_channels(parts.back(), names, read);
+  }
+  return measurement::join(std::move(parts));
+}
+
+// What the lab asks of the platform in the pegged trial of a plan.
+next_run::Bounds bounds_of(const Arguments& arguments) {
+  session::ProtocolOptions protocol;
+  protocol.identify_s = arguments.seconds;
+  protocol.planned = true;
+  const auto platform =
+      settings::load<motion::MotionGenerator::Config>(arguments.config / "motion.yaml", "motion");
+  return {session::motion_profile(session::identification_trial(protocol)), platform.limits};
+}
+
+// The platform moves one input, as an acceleration.
+void check_input(const diagnosis::Signals& signals) {
+  const diagnosis::Signal& input = signals.inputs().front();
+  if (input.quantity == diagnosis::Quantity::kAcceleration) return;
+  throw ConfigError("--input", fmt::format("{} [{}]", input.name, input.unit),
+                    "the platform's acceleration first, in m/s^2");
+}
+
+// What is left of the candidates, if that is more than one.
+next_run::Contest tie_of(const diagnosis::Diagnosis& verdict, const diagnosis::Signals& signals) {
+  constexpr const char* kWanted = "a recording that two causes explain equally well";
+  auto candidates = next_run::tied_candidates(verdict, signals);
+  if (candidates.size() < 2) {
+    throw ConfigError("REC", fmt::format("a verdict without a tie ({})", verdict.verdict()),
+                      kWanted);
+  }
+  const std::size_t count = candidates.size();
+  candidates = next_run::Contest(std::move(candidates), signals).still_tied();
+  if (candidates.size() < 2) {
+    throw ConfigError("REC",
+                      fmt::format("one that breaks the tie itself: of {} causes it leaves {}",
+                                  count, next_run::name_of(candidates.front())),
+                      kWanted);
+  }
+  return {std::move(candidates), signals};
+}
+
+void write_all(const Arguments& arguments, const Planned& planned, report::StagedFolder& folder) {
+  const std::vector<std::filesystem::path> sources(arguments.recordings.begin(),
+                                                   arguments.recordings.end());
+  folder.write(next_run::kRideName, ride_csv(planned.plan.ride));
+  folder.write("plan.json", report::with_provenance(plan_json(planned),
+                                                    report::provenance_of_this_call(sources)));
+  const std::vector<report::Figure> figures{plan_figure(planned)};
+  folder.write("plan.svg", report::draw(figures).front().svg);
+  folder.publish({next_run::kRideName, "plan.json", "plan.svg"});
+}
+
+int run(const Arguments& arguments) {
+  runtime::Stop stop;
+  report::require_gnuplot();
+  report::StagedFolder folder(arguments.out);
+  const runtime::EndAfterStop end(stop, [&] { folder.clear_away(); });
+  const next_run::Bounds bounds = bounds_of(arguments);
+  const diagnosis::Measurement measured = read_all(arguments);
+  report::ProgressLine progress;
+  diagnosis::DiagnoseOptions options = arguments.options;
+  options.for_each = runtime::on_all_cores;
+  double done = 0.0;
+  options.progress = [&](const std::string& step) {
+    progress.show(step, done);
+    done += 0.3 * (1.0 - done);
+    return !stop.requested();
+  };
+  const diagnosis::Diagnosis verdict = diagnosis::diagnose(measured, options);
+  const diagnosis::Measurement working = diagnosis::working_set(measured, options.inputs);
+  const diagnosis::Signals signals(working, options.inputs, options.output);
+  check_input(signals);
+  const next_run::Contest contest = tie_of(verdict, signals);
+  progress.show("designing", done);
+  const next_run::Plan plan = next_run::best_plan(contest, working, bounds, runtime::on_all_cores);
+  progress.finish();
+  const Planned planned{contest, plan, bounds, arguments.seconds,
+                        advice_for(contest, plan, signals)};
+  write_all(arguments, planned, folder);
+  std::fputs(plan_table(planned).c_str(), stdout);
+  report::say_next(
+      fmt::format("stillhand lab --plan {} --out NEW, and then stillhand diagnose {} "
+                  "NEW/session.mcap --plan {}",
+                  report::quoted_for_shell((arguments.out / "plan.json").string()),
+                  report::quoted_for_shell(arguments.recordings.front()),
+                  report::quoted_for_shell((arguments.out / "plan.json").string())));
+  return 0;
+}
+
+}  // namespace
+
+void add_plan_run_command(CLI::App& cli, int& status) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = cli.add_subcommand(
+      "plan-run",
+      "Plans the run that tells tied causes apart. Diagnoses the recording, takes the causes that "
+      "explain\nit about equally well, and looks for the motion, within the platform's limits, on "
+      "which their\npredictions differ most for the noise of the recording. It states the "
+      "probability that the run\nbreaks the tie.\nREC: as for `stillhand diagnose`.\nExample: "
+      "stillhand plan-run run1/session.mcap --seconds 30 --out next");
+  verb->add_option("REC", arguments->recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")
+      ->required();
+  verb->add_option("--seconds", arguments->seconds, "length of the run [s]")
+      ->check(CLI::Range(5.0, 600.0))
+      ->capture_default_str();
+  verb->add_option("--out", arguments->out, "folder for ride.csv, plan.json and plan.svg")
+      ->required()
+      ->check(settings::check_name);
+  verb->add_option("--input", arguments->options.inputs,
+                   "inputs of the model: channel(s), comma-separated; the platform moves the first")
+      ->delimiter(',')
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1)
+      ->capture_default_str();
+  verb->add_option("--output", arguments->options.output, "channel that the model predicts")
+      ->capture_default_str();
+  verb->add_option("--config", arguments->config,
+                   "folder with the settings of each service; motion.yaml holds the platform's "
+                   "limits")
+      ->capture_default_str();
+  diagnose::add_diagnose_options(*verb, arguments->options);
+  verb->add_option("--trial", arguments->read.trial,
+                   "trial of a session's recording: its number, or the letter of its condition");
+  measurement::add_read_options(*verb, arguments->read);
+  verb->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace stillhand::plan_run

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "services/core/diagnosis/diagnose.hpp"
+
+namespace stillhand::next_run {
+
+/// A cause that explains a recording about as well as another one.
+struct Candidate {
+  diagnosis::Model model;     ///< fitted to the recording, with every other effect of the verdict
+  std::size_t effect = 0;     ///< in `model.effects`: the one that the candidates do not share
+  double heldout_rmse = 0.0;  ///< [unit of the output] as the search judged it
+  [[nodiscard]] const diagnosis::Effect& cause() const { return model.effects.at(effect); }
+};
+
+/// At most so many, the verdict's included: the pairs grow with the square.
+inline constexpr std::size_t kMostCandidates = 5;
+
+/// Candidates of the strongest effect that has a tie, the verdict's own first, Eq. NR-1: one for
+/// each kind and channel.  Fewer than two: nothing is tied.  Pure.
+/// @param signals  of the recording, as it was diagnosed
+std::vector<Candidate> tied_candidates(const diagnosis::Diagnosis& diagnosis,
+                                       const diagnosis::Signals& signals);
+
+/// What else than the platform's motion tells two candidates apart, Eq. NR-8, a sentence each;
+/// empty: they read the same channels.
+std::vector<std::string> other_ways(const Candidate& one, const Candidate& other,
+                                    const diagnosis::Signals& signals);
+
+/// "coulomb_friction (of omega, sign)"
+std::string name_of(const Candidate& candidate);
+
+}  // namespace stillhand::next_run

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/next_run/contest.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <limits>
+
+#include "services/core/diagnosis/fitting/fit.hpp"
+#include "services/core/diagnosis/fitting/noise_model.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+
+namespace stillhand::next_run {
+namespace {
+
+using diagnosis::Measurement;
+using diagnosis::Model;
+using diagnosis::Signals;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kBlock_s = 2.0;         // longer than the body's memory, Eq. DG-11
+constexpr double kUndetermined = 1e-10;  // of the largest eigenvalue, Eq. DG-70
+constexpr double kNeverFits = 1e12;      // [-] a run that is not finite
+
+// The inverse where the data determine it, nothing elsewhere.
+MatrixXd inverse(const MatrixXd& squares) {
+  const VectorXd scale =
+      squares.diagonal().unaryExpr([](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * squares *
+                                                      scale.asDiagonal());
+  const double least = kUndetermined * std::max(eigen.eigenvalues().tail(1)[0], 1e-300);
+  const VectorXd inverted =
+      eigen.eigenvalues().unaryExpr([least](double x) { return x > least ? 1.0 / x : 0.0; });
+  const MatrixXd root = scale.asDiagonal() * eigen.eigenvectors();
+  return root * inverted.asDiagonal() * root.transpose();
+}
+
+// Places of the numbers of an effect that a further recording does not share, in packed()'s order.
+std::vector<Index> own_numbers(const Model& model) {
+  Model bare = model;
+  bare.effects.clear();
+  Index next = diagnosis::packed(bare).size();
+  std::vector<Index> own;
+  for (const diagnosis::Effect& effect : model.effects) {
+    const Index end = next + std::ssize(effect.coefficients) +
+                      std::ranges::count_if(effect.parameters, &diagnosis::Parameter::fitted);
+    const bool time_only = diagnosis::effect_kind(effect.kind).time_only(effect);
+    for (; next < end; ++next) {
+      if (time_only) own.push_back(next);
+    }
+  }
+  return own;
+}
+
+// Forgets what is known of these numbers, and of the others through them: the Schur complement.
+MatrixXd without(const MatrixXd& information, const std::vector<Index>& own) {
+  if (own.empty()) return information;
+  const MatrixXd columns = information(Eigen::all, own);
+  MatrixXd left = information - columns * inverse(information(own, own)) * columns.transpose();
+  left(own, Eigen::all).setZero();
+  left(Eigen::all, own).setZero();
+  return left;
+}
+
+// Sums over blocks of a stretch each.
+std::vector<double> block_sums(const VectorXd& values, const Signals& signals) {
+  std::vector<double> sums;
+  const auto length = static_cast<std::size_t>(kBlock_s * signals.rate_hz());
+  for (const diagnosis::Stretch& stretch : signals.stretches()) {
+    for (std::size_t n = stretch.first; n < stretch.end; n += length) {
+      const std::size_t count = std::min(length, stretch.end - n);
+      sums.push_back(values.segment(static_cast<Index>(n), static_cast<Index>(count)).sum());
+    }
+  }
+  return sums;
+}
+
+// Variance of the sum of all blocks, from their scatter.
+double variance_of_sum(const std::vector<double>& sums) {
+  const auto count = static_cast<double>(sums.size());
+  double mean = 0.0;
+  for (const double sum : sums) mean += sum / count;
+  double square = 0.0;
+  for (const double sum : sums) square += (sum - mean) * (sum - mean);
+  return count < 2.0 ? 0.0 : square * count / (count - 1.0);
+}
+
+double phi(double z) { return boost::math::cdf(boost::math::normal(), z); }
+
+Evidence no_evidence(Index count) {
+  const MatrixXd none = MatrixXd::Zero(count, count);
+  return {none, none, none};
+}
+
+// Errors of each candidate over one recording into the evidence.
+// @param residuals  of the candidates, and of the model without any of the causes
+void add(const std::vector<VectorXd>& residuals, const Signals& signals, double variance,
+         Evidence& evidence) {
+  for (std::size_t i = 0; i + 1 < residuals.size(); ++i) {
+    const double gain = (residuals.back().squaredNorm() - residuals[i].squaredNorm()) / variance;
+    for (std::size_t j = 0; j + 1 < residuals.size(); ++j) {
+      if (i == j) continue;
+      const VectorXd difference =
+          (residuals[j].array().square() - residuals[i].array().square()) / variance;
+      const auto row = static_cast<Index>(i);
+      const auto column = static_cast<Index>(j);
+      const double more = difference.sum();
+      const double error = std::sqrt(variance_of_sum(block_sums(difference, signals)));
+      evidence.twice_log_ratio(row, column) += more;
+      evidence.standard_error(row, column) =
+          std::hypot(evidence.standard_error(row, column), error);
+      if (more >= std::max({kStrong, kStandardErrors * error, (1.0 - kTiedGain) * gain})) {
+        evidence.distinct(row, column) = 1.0;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool Evidence::settled(Index i, Index j) const {
+  return distinct(i, j) > 0.0 &&
+         twice_log_ratio(i, j) >= std::max(kStrong, kStandardErrors * standard_error(i, j));
+}
+
+Index Evidence::winner() const {
+  const std::vector<Index> all = left();
+  if (all.size() != 1) return -1;
+  for (Index j = 0; j < twice_log_ratio.cols(); ++j) {
+    if (j != all.front() && !settled(all.front(), j)) return -1;
+  }
+  return all.front();
+}
+
+std::vector<Index> Evidence::left() const {
+  std::vector<Index> all;
+  for (Index i = 0; i < twice_log_ratio.rows(); ++i) {
+    bool beaten = false;
+    for (Index j = 0; j < twice_log_ratio.rows(); ++j) beaten = beaten || (j != i && settled(j, i));
+    if (!beaten) all.push_back(i);
+  }
+  return all;
+}
+
+Contest::Contest(std::vector<Candidate> candidates, const Signals& signals)
+    : candidates_(std::move(candidates)), inputs_(candidates_.front().model.inputs) {
+  diagnosis::FreeRun run;
+  taps_ = diagnosis::whitening_taps(diagnosis::residual_of(candidates_.front().model, signals, run),
+                                    signals);
+  weigh(signals.whitened(taps_));
+}
+
+// Eq. NR-2.
+void Contest::weigh(const Signals& judged) {
+  const auto count = static_cast<Index>(candidates_.size());
+  const diagnosis::Blocks blocks = diagnosis::make_blocks(judged);
+  for (const Candidate& candidate : candidates_) models_.push_back(candidate.model);
+  models_.push_back(models_.front());
+  models_.back().effects.erase(models_.back().effects.begin() +
+                               static_cast<std::ptrdiff_t>(candidates_.front().effect));
+  std::vector<VectorXd> residuals;
+  double samples = 0.0;
+  for (const double weight : judged.weight()) samples += weight;
+  variance_ = std::numeric_limits<double>::infinity();
+  for (Model& model : models_) {
+    diagnosis::fit(model, judged, blocks);
+    const diagnosis::Linearisation line = diagnosis::linearised(model, judged);
+    variance_ = std::min(variance_, line.residual.squaredNorm() / samples);
+    information_.push_back(line.jacobian.transpose() * line.jacobian);
+    residuals.push_back(line.residual);
+  }
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    information_[i] = without(information_[i] / variance_, own_numbers(models_[i]));
+  }
+  before_ = no_evidence(count);
+  add(residuals, judged, variance_, before_);
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    candidates_[i].model = models_[i];
+    for (std::size_t j = 0; j < candidates_.size(); ++j) {
+      before_.twice_log_ratio(static_cast<Index>(i), static_cast<Index>(j)) +=
+          (static_cast<double>(complexity(models_[j])) -
+           static_cast<double>(complexity(models_[i]))) *
+          std::log(samples);
+    }
+  }
+}
+
+std::vector<Candidate> Contest::still_tied() const {
+  std::vector<Candidate> tied;
+  for (const Index i : before_.left()) tied.push_back(candidates_[static_cast<std::size_t>(i)]);
+  return tied;
+}
+
+Signals Contest::signals_of(const Measurement& run) const {
+  return {run, inputs_, candidates_.front().model.output};
+}
+
+std::vector<double> Contest::prediction(std::size_t i, const Measurement& run) const {
+  return diagnosis::free_run(candidates_[i].model, signals_of(run)).prediction;
+}
+
+// Eq. NR-3, by Gauss and Newton; a step that makes it worse is halved.
+Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) const {
+  constexpr int kHalvings = 6;
+  Model model = models_[j];
+  const VectorXd start = diagnosis::packed(model);
+  const MatrixXd& information = information_[j];
+  const auto known = [&](const Model& at) {
+    const VectorXd moved = diagnosis::packed(at) - start;
+    return moved.dot(information * moved);
+  };
+  diagnosis::Linearisation line = diagnosis::linearised(model, run);
+  if (!line.finite) return {kNeverFits, 0.0, VectorXd::Zero(static_cast<Index>(run.size()))};
+  Refit best{line.residual.squaredNorm() / variance_, 0.0, line.residual};
+  for (int step = 0;; ++step) {
+    const VectorXd numbers = diagnosis::packed(model);
+    const VectorXd downhill =
+        line.jacobian.transpose() * line.residual / variance_ - information * (numbers - start);
+    const VectorXd way =
+        inverse(line.jacobian.transpose() * line.jacobian / variance_ + information) * downhill;
+    if (steps == 0) {
+      best.cost -= way.dot(downhill);
+      return best;
+    }
+    bool better = false;
+    for (int half = 0; half < kHalvings && !better; ++half) {
+      Model next = model;
+      diagnosis::unpack(numbers + std::pow(0.5, half) * way, next);
+      if (!is_stable(next.body)) continue;
+      diagnosis::FreeRun free;
+      const VectorXd residual = diagnosis::residual_of(next, run, free);
+      if (!free.finite) continue;
+      const double cost = residual.squaredNorm() / variance_ + known(next);
+      better = cost < best.cost;
+      if (better) {
+        best = {cost, known(next), residual};
+        model = std::move(next);
+      }
+    }
+    if (!better || step + 1 == steps) return best;
+    line = diagnosis::linearised(model, run);
+  }
+}
+
+MatrixXd Contest::separation(const Measurement& run, int steps) const {
+  const auto count = static_cast<Index>(candidates_.size());
+  MatrixXd apart = MatrixXd::Zero(count, count + 1);
+  Measurement as_predicted = run;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const diagnosis::FreeRun free = diagnosis::free_run(candidates_[i].model, signals_of(run));
+    if (!free.finite) continue;
+    for (diagnosis::Channel& channel : as_predicted.channels) {
+      if (channel.name == candidates_[i].model.output) channel.values = free.prediction;
+    }
+    const Signals judged = signals_of(as_predicted).whitened(taps_);
+    for (std::size_t j = 0; j < models_.size(); ++j) {
+      if (i == j) continue;
+      apart(static_cast<Index>(i), static_cast<Index>(j)) = refitted(j, judged, steps).cost;
+    }
+  }
+  return apart;
+}
+
+MatrixXd Contest::margin(const MatrixXd& separation) const {
+  const Index count = separation.rows();
+  MatrixXd margins = MatrixXd::Zero(count, count);
+  for (Index i = 0; i < count; ++i) {
+    for (Index j = 0; j < count; ++j) {
+      if (i == j) continue;
+      const double apart = std::max(separation(i, j), 1e-9);
+      const double spread = 2.0 * std::sqrt(apart);
+      const double in_all =
+          std::max(kStrong, kStandardErrors * std::hypot(spread, before_.standard_error(i, j))) -
+          before_.twice_log_ratio(i, j);
+      const double in_run =
+          std::max({kStrong, kStandardErrors * spread, (1.0 - kTiedGain) * separation(i, count)});
+      const bool shown = before_.distinct(i, j) > 0.0;
+      margins(i, j) = (apart - (shown ? in_all : std::max(in_all, in_run))) / spread;
+    }
+  }
+  return margins;
+}
+
+MatrixXd Contest::chance(const MatrixXd& separation) const {
+  MatrixXd chances = margin(separation).unaryExpr([](double z) { return phi(z); });
+  chances.diagonal().setZero();
+  return chances;
+}
+
+double Contest::probability_settled(const MatrixXd& separation) const {
+  const MatrixXd chances = chance(separation);
+  const auto count = chances.rows();
+  double sum = 0.0;
+  for (Index i = 0; i < count; ++i) {
+    double missed = 0.0;
+    for (Index j = 0; j < count; ++j) missed += i == j ? 0.0 : 1.0 - chances(i, j);
+    sum += std::max(0.0, 1.0 - missed) / static_cast<double>(count);
+  }
+  return sum;
+}
+
+// Eq. NR-4.
+Evidence Contest::with(const Measurement& run) const {
+  constexpr int kSteps = 20;
+  const Signals judged = signals_of(run).whitened(taps_);
+  double samples = 0.0;
+  for (const double weight : judged.weight()) samples += weight;
+  std::vector<VectorXd> residuals;
+  std::vector<double> known;
+  double variance = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < models_.size(); ++j) {
+    Refit refit = refitted(j, judged, kSteps);
+    variance = std::min(variance, refit.cost * variance_ / samples);
+    known.push_back(refit.known);
+    residuals.push_back(std::move(refit.residual));
+  }
+  Evidence evidence = before_;
+  add(residuals, judged, std::max(variance, variance_), evidence);
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    for (std::size_t j = 0; j < candidates_.size(); ++j) {
+      evidence.twice_log_ratio(static_cast<Index>(i), static_cast<Index>(j)) += known[j] - known[i];
+    }
+  }
+  return evidence;
+}
+
+}  // namespace stillhand::next_run

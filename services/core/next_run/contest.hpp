@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "services/core/diagnosis/signals.hpp"
+#include "services/core/next_run/candidates.hpp"
+
+namespace stillhand::next_run {
+
+/// By how much the evidence has to exceed chance before a tie counts as broken, Eq. NR-5.
+inline constexpr double kStrong = 6.0;          ///< [-] twice a log ratio; Kass and Raftery, 1995
+inline constexpr double kStandardErrors = 2.0;  ///< as in the choice of a name, Eq. DG-17
+/// [-] of what a cause explains: a rival that explains all but this is tied with it, Eq. DG-17.
+inline constexpr double kTiedGain = diagnosis::SearchOptions{}.tied_gain;
+
+/// Evidence for candidate i (row) against j (column), Eq. NR-2 and NR-4.
+struct Evidence {
+  Eigen::MatrixXd twice_log_ratio;  ///< [-] positive: i explains more
+  Eigen::MatrixXd standard_error;   ///< [-] over blocks of 2 s
+  Eigen::MatrixXd distinct;  ///< 1: the recording or the run shows it by itself, Eq. NR-5; 0: none
+
+  /// Eq. NR-5.
+  [[nodiscard]] bool settled(Eigen::Index i, Eigen::Index j) const;
+  /// The candidate that beats every other one; -1: none.
+  [[nodiscard]] Eigen::Index winner() const;
+  /// Those that no other one beats.
+  [[nodiscard]] std::vector<Eigen::Index> left() const;
+};
+
+/// Candidates against each other: what a recording says, what a further run can say, and what it
+/// said.  README Eq. NR-2 to NR-6.  Pure; const functions from any thread.
+class Contest {
+ public:
+  /// @param signals  of the recording to which the candidates were fitted
+  Contest(std::vector<Candidate> candidates, const diagnosis::Signals& signals);
+
+  [[nodiscard]] const std::vector<Candidate>& candidates() const noexcept { return candidates_; }
+  /// Of the recording alone.
+  [[nodiscard]] const Evidence& before() const noexcept { return before_; }
+  /// Those that the recording does not beat, Eq. NR-5: fitted again behind the noise model, some of
+  /// the search's fall back.
+  [[nodiscard]] std::vector<Candidate> still_tied() const;
+  /// [unit of the output] RMS of the noise.
+  [[nodiscard]] double noise_rms() const noexcept { return std::sqrt(variance_); }
+
+  /// What candidate i predicts of a run.
+  /// @param run  its channels; the output counts for nothing
+  [[nodiscard]] std::vector<double> prediction(std::size_t i,
+                                               const diagnosis::Measurement& run) const;
+  /// Noncentrality of each pair, Eq. NR-3: i is true (row), j is fitted to it (column); the last
+  /// column is the model without the cause.
+  /// @param steps  of the refit; 0: by one linearisation
+  [[nodiscard]] Eigen::MatrixXd separation(const diagnosis::Measurement& run, int steps) const;
+  /// By how many deviations a run of that separation is expected to break each tie, i being true.
+  [[nodiscard]] Eigen::MatrixXd margin(const Eigen::MatrixXd& separation) const;
+  /// The probability that it does, Eq. NR-6.
+  [[nodiscard]] Eigen::MatrixXd chance(const Eigen::MatrixXd& separation) const;
+  /// Eq. NR-7.
+  [[nodiscard]] double probability_settled(const Eigen::MatrixXd& separation) const;
+
+  /// Evidence of the recording and of a run that was made since.
+  [[nodiscard]] Evidence with(const diagnosis::Measurement& run) const;
+
+ private:
+  struct Refit {
+    double cost = 0.0;         // [-] Eq. NR-3; of noise of variance 1
+    double known = 0.0;        // [-] the part of it that the recording's knowledge adds
+    Eigen::VectorXd residual;  // [unit of the output] behind the noise model
+  };
+  [[nodiscard]] diagnosis::Signals signals_of(const diagnosis::Measurement& run) const;
+  [[nodiscard]] Refit refitted(std::size_t j, const diagnosis::Signals& run, int steps) const;
+  void weigh(const diagnosis::Signals& judged);
+
+  std::vector<Candidate> candidates_;
+  std::vector<diagnosis::Model> models_;  // of the candidates, and without any of the causes
+  std::vector<std::string> inputs_;
+  std::vector<double> taps_;                  // Eq. DG-61
+  std::vector<Eigen::MatrixXd> information_;  // of each candidate's numbers, noise of variance 1
+  double variance_ = 1.0;                     // of the whitened noise
+  Evidence before_;
+};
+
+}  // namespace stillhand::next_run

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/next_run/contest.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/next_run/two_channels.hpp"
+
+namespace stillhand::next_run {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(ContestTest, TheSameColumnIsATie) {
+  const Contest sut = made::tied();
+  EXPECT_NEAR(sut.before().twice_log_ratio(0, 1), 0.0, 1e-6);
+  EXPECT_NEAR(sut.before().standard_error(0, 1), 0.0, 1e-6);
+  EXPECT_EQ(sut.before().winner(), -1);
+  EXPECT_EQ(sut.still_tied().size(), 2U);
+}
+
+// Eq. NR-3 in closed form.  The recording has 3200 samples behind its first second, the run 2000.
+// d of the rival costs c^2 2000 for x, d^2 2000 for z, and (d - c)^2 3200 against the recording.
+TEST(ContestTest, TheRivalIsFittedToBothRuns) {
+  const Contest sut = made::tied();
+  const double c = sut.candidates()[0].cause().coefficients[0] / sut.noise_rms();
+  const double expected = c * c * (2000.0 + 2000.0 * 3200.0 / 5200.0);
+  const auto run = made::measured(2100, 8, 2);
+  // The edge of the first second is a sample of 2000.
+  EXPECT_NEAR(sut.separation(run, 0)(0, 1), expected, 0.002 * expected);
+  EXPECT_NEAR(sut.separation(run, 5)(0, 1), expected, 0.002 * expected);
+}
+
+TEST(ContestTest, ARunThatRepeatsTheTieSeparatesNothing) {
+  EXPECT_NEAR(made::tied().separation(made::measured(2100, 4, 2), 5)(0, 1), 0.0, 1e-6);
+}
+
+// Eq. NR-6: Phi((36 - 2 x 12)/12) = Phi(1), and Phi((1 - 6)/2) = Phi(-2.5).
+TEST(ContestTest, TheChanceIsThatOfANoncentralRatio) {
+  const Contest sut = made::tied();
+  Eigen::MatrixXd separation = Eigen::MatrixXd::Zero(2, 3);
+  separation(0, 1) = 36.0;
+  separation(1, 0) = 1.0;
+  const Eigen::MatrixXd chance = sut.chance(separation);
+  EXPECT_NEAR(chance(0, 1), 0.8413, 1e-3);
+  EXPECT_NEAR(chance(1, 0), 0.0062, 1e-3);
+  EXPECT_NEAR(sut.probability_settled(separation), 0.5 * (0.8413 + 0.0062), 1e-3);
+  // A rival that explains all but 5 % of what the cause does is tied: Phi((36 - 50)/12).
+  separation(0, 2) = 1000.0;
+  EXPECT_NEAR(sut.chance(separation)(0, 1), 0.1217, 1e-3);
+}
+
+TEST(ContestTest, ARunInWhichTheyDifferLeavesTheTrueOne) {
+  const Contest sut = made::tied();
+  const Evidence after = sut.with(made::measured(2100, 8, 2));
+  EXPECT_EQ(after.winner(), 0);
+  EXPECT_THAT(after.left(), ElementsAre(0));
+  // As expected, to four deviations of 2 sqrt(separation).
+  const double expected = sut.separation(made::measured(2100, 8, 2), 5)(0, 1);
+  EXPECT_NEAR(after.twice_log_ratio(0, 1), expected, 8.0 * std::sqrt(expected));
+}
+
+TEST(ContestTest, ARepetitionLeavesBoth) {
+  const Contest sut = made::tied();
+  EXPECT_THAT(sut.with(made::measured(2100, 4, 2)).left(), ElementsAre(0, 1));
+}
+
+// Two candidates of one channel, one of them with a factor that the recording does not support.
+TEST(ContestTest, WhatTheRecordingBeatsIsNotTied) {
+  const Contest sut({made::candidate("x"), made::candidate("z")},
+                    diagnosis::Signals(made::measured(3300, 8, 1), {"u"}, "y"));
+  EXPECT_EQ(sut.before().winner(), 0);
+  EXPECT_EQ(sut.still_tied().size(), 1U);
+}
+
+}  // namespace
+}  // namespace stillhand::next_run
