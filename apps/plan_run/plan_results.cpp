@@ -88,11 +88,6 @@ report::Series spectrum_of(const std::vector<double>& values, double rate_hz) {
   return series;
 }
 
-std::vector<double> difference(std::vector<double> one, const std::vector<double>& other) {
-  for (std::size_t n = 0; n < one.size(); ++n) one[n] -= other[n];
-  return one;
-}
-
 }  // namespace
 
 std::vector<std::string> advice_for(const next_run::Contest& contest, const next_run::Plan& plan,
@@ -163,13 +158,13 @@ std::string ride_csv(const next_run::Ride& ride) {
 }
 
 report::Figure plan_figure(const Planned& planned) {
+  constexpr int kSteps = 8;  // as the plan was judged
   constexpr std::array kColours{report::Colour::kAccent, report::Colour::kWarning,
                                 report::Colour::kConditionC, report::Colour::kConditionB};
   const diagnosis::Measurement& run = planned.plan.run;
   const diagnosis::Model& model = planned.contest.candidates().front().model;
   const std::vector<double> time_s = run.time_s();
   const std::vector<double>& motion = run.find(model.inputs.front())->values;
-  const std::vector<double> first = planned.contest.prediction(0, run);
   const std::string unit = " [" + model.output_unit + "]";
   report::Panel over_time{.title = "the motion",
                           .x = {.label = "time [s]"},
@@ -182,16 +177,17 @@ report::Figure plan_figure(const Planned& planned) {
                                 .x = {.label = "frequency [Hz]"},
                                 .y = {.label = "RMS in 0.1 Hz [m/s²]"}};
   motion_spectrum.series.push_back(spectrum_of(motion, run.rate_hz));
-  report::Panel apart{.title = "prediction less that of " + name_at(planned, 0),
+  report::Panel apart{.title = "what each leaves of the prediction of " + name_at(planned, 0),
                       .x = {.label = "time [s]"},
                       .y = {.label = model.output + unit}};
-  report::Panel apart_spectrum{.title = "spectrum of the difference",
+  report::Panel apart_spectrum{.title = "spectrum of what is left",
                                .x = {.label = "frequency [Hz]"},
                                .y = {.label = "RMS in 0.1 Hz" + unit},
                                .legend = report::Legend::kNone};
   for (std::size_t i = 1; i < count_of(planned); ++i) {
     const report::Colour colour = kColours[(i - 1) % kColours.size()];
-    const auto values = difference(planned.contest.prediction(i, run), first);
+    const Eigen::VectorXd left = planned.contest.unmatched(0, i, run, kSteps);
+    const std::vector<double> values(left.begin(), left.end());
     apart.series.push_back(
         {.label = name_at(planned, i), .colour = colour, .x = time_s, .y = values});
     report::Series lines = spectrum_of(values, run.rate_hz);

@@ -30,7 +30,8 @@ std::string plan_json(const Planned& planned);
 std::string plan_table(const Planned& planned);
 /// ride.csv: `t [s],a_y [m/s^2]`, for the motion service.
 std::string ride_csv(const next_run::Ride& ride);
-/// The motion, and by how much the candidates' predictions of it differ, over time and frequency.
+/// The motion, and what each other candidate, fitted to it, leaves of the first one's prediction,
+/// over time and frequency.
 report::Figure plan_figure(const Planned& planned);
 
 }  // namespace stillhand::plan_run

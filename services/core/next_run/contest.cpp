@@ -146,7 +146,9 @@ std::vector<Index> Evidence::left() const {
 }
 
 Contest::Contest(std::vector<Candidate> candidates, const Signals& signals)
-    : candidates_(std::move(candidates)), inputs_(candidates_.front().model.inputs) {
+    : candidates_(std::move(candidates)),
+      inputs_(candidates_.front().model.inputs),
+      band_hz_(signals.lowest_excited_hz(), signals.highest_excited_hz()) {
   diagnosis::FreeRun run;
   taps_ = diagnosis::whitening_taps(diagnosis::residual_of(candidates_.front().model, signals, run),
                                     signals);
@@ -202,9 +204,8 @@ std::vector<double> Contest::prediction(std::size_t i, const Measurement& run) c
   return diagnosis::free_run(candidates_[i].model, signals_of(run)).prediction;
 }
 
-// Eq. NR-3, by Gauss and Newton; a step that makes it worse is halved.
+// Eq. NR-3, by Levenberg and Marquardt.
 Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) const {
-  constexpr int kHalvings = 6;
   Model model = models_[j];
   const VectorXd start = diagnosis::packed(model);
   const MatrixXd& information = information_[j];
@@ -219,16 +220,19 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
     const VectorXd numbers = diagnosis::packed(model);
     const VectorXd downhill =
         line.jacobian.transpose() * line.residual / variance_ - information * (numbers - start);
-    const VectorXd way =
-        inverse(line.jacobian.transpose() * line.jacobian / variance_ + information) * downhill;
+    const MatrixXd squares = line.jacobian.transpose() * line.jacobian / variance_ + information;
+    const VectorXd way = inverse(squares) * downhill;
     if (steps == 0) {
       best.cost -= way.dot(downhill);
       return best;
     }
     bool better = false;
-    for (int half = 0; half < kHalvings && !better; ++half) {
+    for (const double damping : {0.0, 0.01, 0.1, 1.0, 10.0, 100.0}) {
+      if (better) break;
+      MatrixXd damped = squares;
+      damped.diagonal() *= 1.0 + damping;
       Model next = model;
-      diagnosis::unpack(numbers + std::pow(0.5, half) * way, next);
+      diagnosis::unpack(numbers + inverse(damped) * downhill, next);
       if (!is_stable(next.body)) continue;
       diagnosis::FreeRun free;
       const VectorXd residual = diagnosis::residual_of(next, run, free);
@@ -245,23 +249,33 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
   }
 }
 
+std::optional<Signals> Contest::as_predicted(std::size_t i, const Measurement& run) const {
+  const diagnosis::FreeRun free = diagnosis::free_run(models_[i], signals_of(run));
+  if (!free.finite) return std::nullopt;
+  Measurement predicted = run;
+  for (diagnosis::Channel& channel : predicted.channels) {
+    if (channel.name == models_[i].output) channel.values = free.prediction;
+  }
+  return signals_of(predicted).whitened(taps_);
+}
+
 MatrixXd Contest::separation(const Measurement& run, int steps) const {
   const auto count = static_cast<Index>(candidates_.size());
   MatrixXd apart = MatrixXd::Zero(count, count + 1);
-  Measurement as_predicted = run;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    const diagnosis::FreeRun free = diagnosis::free_run(candidates_[i].model, signals_of(run));
-    if (!free.finite) continue;
-    for (diagnosis::Channel& channel : as_predicted.channels) {
-      if (channel.name == candidates_[i].model.output) channel.values = free.prediction;
-    }
-    const Signals judged = signals_of(as_predicted).whitened(taps_);
-    for (std::size_t j = 0; j < models_.size(); ++j) {
+    const std::optional<Signals> judged = as_predicted(i, run);
+    for (std::size_t j = 0; judged && j < models_.size(); ++j) {
       if (i == j) continue;
-      apart(static_cast<Index>(i), static_cast<Index>(j)) = refitted(j, judged, steps).cost;
+      apart(static_cast<Index>(i), static_cast<Index>(j)) = refitted(j, *judged, steps).cost;
     }
   }
   return apart;
+}
+
+VectorXd Contest::unmatched(std::size_t i, std::size_t j, const Measurement& run, int steps) const {
+  const std::optional<Signals> judged = as_predicted(i, run);
+  if (!judged) return VectorXd::Zero(static_cast<Index>(run.size()));
+  return refitted(j, *judged, steps).residual;
 }
 
 MatrixXd Contest::margin(const MatrixXd& separation) const {

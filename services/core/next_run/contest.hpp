@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 #include <vector>
 
 #include "services/core/diagnosis/signals.hpp"
@@ -42,6 +43,9 @@ class Contest {
   /// Those that the recording does not beat, Eq. NR-5: fitted again behind the noise model, some of
   /// the search's fall back.
   [[nodiscard]] std::vector<Candidate> still_tied() const;
+  /// [Hz] The band that the recording excites; outside of it no candidate's body is determined,
+  /// Eq. DG-65.
+  [[nodiscard]] std::pair<double, double> band_hz() const noexcept { return band_hz_; }
   /// [unit of the output] RMS of the noise.
   [[nodiscard]] double noise_rms() const noexcept { return std::sqrt(variance_); }
 
@@ -53,6 +57,10 @@ class Contest {
   /// column is the model without the cause.
   /// @param steps  of the refit; 0: by one linearisation
   [[nodiscard]] Eigen::MatrixXd separation(const diagnosis::Measurement& run, int steps) const;
+  /// [unit of the output] What the second leaves of the first one's prediction, fitted to it as in
+  /// Eq. NR-3, behind the noise model.
+  [[nodiscard]] Eigen::VectorXd unmatched(std::size_t i, std::size_t j,
+                                          const diagnosis::Measurement& run, int steps) const;
   /// By how many deviations a run of that separation is expected to break each tie, i being true.
   [[nodiscard]] Eigen::MatrixXd margin(const Eigen::MatrixXd& separation) const;
   /// The probability that it does, Eq. NR-6.
@@ -70,12 +78,17 @@ class Contest {
     Eigen::VectorXd residual;  // [unit of the output] behind the noise model
   };
   [[nodiscard]] diagnosis::Signals signals_of(const diagnosis::Measurement& run) const;
+  // The run with that candidate's prediction as its output, behind the noise model; none: the
+  // candidate's run is not finite.
+  [[nodiscard]] std::optional<diagnosis::Signals> as_predicted(
+      std::size_t i, const diagnosis::Measurement& run) const;
   [[nodiscard]] Refit refitted(std::size_t j, const diagnosis::Signals& run, int steps) const;
   void weigh(const diagnosis::Signals& judged);
 
   std::vector<Candidate> candidates_;
   std::vector<diagnosis::Model> models_;  // of the candidates, and without any of the causes
   std::vector<std::string> inputs_;
+  std::pair<double, double> band_hz_;
   std::vector<double> taps_;                  // Eq. DG-61
   std::vector<Eigen::MatrixXd> information_;  // of each candidate's numbers, noise of variance 1
   double variance_ = 1.0;                     // of the whitened noise

@@ -151,36 +151,45 @@ std::vector<std::vector<double>> loudest_of(const std::vector<Design>& designs,
   return loudest;
 }
 
-// The grid of Eq. NR-10.
-std::vector<Design> first_designs(const Bounds& bounds) {
-  const double low = std::max(0.3, bounds.ride.band_low_hz);
-  const double high = bounds.ride.band_high_hz;
+using Band = std::pair<double, double>;
+
+// The band of the recording, as far as the platform follows it.
+Band band_of(const Contest& contest, const Bounds& bounds) {
+  return {std::max(contest.band_hz().first, bounds.ride.band_low_hz),
+          std::min(contest.band_hz().second, bounds.ride.band_high_hz)};
+}
+
+// The grid of Eq. NR-10: the band, its halves and thirds on a logarithmic axis.
+std::vector<Design> first_designs(const Band& band) {
+  const auto at = [&](double part) {
+    return band.first * std::pow(band.second / band.first, part);
+  };
   std::vector<Design> designs;
-  for (const auto& [from, to] : {std::pair{low, 1.0},
-                                 {0.5, 2.0},
-                                 {0.7, high},
-                                 {1.0, 3.0},
-                                 {2.0, high},
-                                 {3.0, high},
-                                 {low, high}}) {
+  for (const auto& [from, to] : {std::pair{0.0, 1.0},
+                                 {0.0, 0.5},
+                                 {0.5, 1.0},
+                                 {0.0, 1.0 / 3.0},
+                                 {1.0 / 3.0, 2.0 / 3.0},
+                                 {2.0 / 3.0, 1.0}}) {
     for (const Family family :
          {Family::kNoise, Family::kMultisine, Family::kSweep, Family::kSteps}) {
       for (const double level : {1.0, 0.5, 0.25}) {
-        designs.push_back({family, from, to, level, family == Family::kSteps ? 0.2 : 1.0, 1});
+        designs.push_back(
+            {family, at(from), at(to), level, family == Family::kSteps ? 0.2 : 1.0, 1});
       }
     }
   }
   return designs;
 }
 
-std::vector<Design> around(const Design& best, const Bounds& bounds, std::uint64_t seed) {
+std::vector<Design> around(const Design& best, const Band& band, std::uint64_t seed) {
   constexpr double kStep = 1.3;
   std::vector<Design> designs;
   const auto add = [&](auto&& change) {
     Design other = best;
     change(other);
-    other.low_hz = std::max(other.low_hz, bounds.ride.band_low_hz);
-    other.high_hz = std::min(other.high_hz, bounds.ride.band_high_hz);
+    other.low_hz = std::max(other.low_hz, band.first);
+    other.high_hz = std::min(other.high_hz, band.second);
     if (other.low_hz * 1.1 < other.high_hz) designs.push_back(other);
   };
   add([&](Design& d) { d.low_hz *= kStep; });
@@ -329,7 +338,8 @@ Plan best_plan(const Contest& contest, const Measurement& recorded, const Bounds
   constexpr int kRounds = 2;
   constexpr int kSteps = 8;
   constexpr double kEnough = 0.95;
-  std::vector<Tried> all = tried(first_designs(bounds), contest, recorded, bounds, for_each);
+  const Band band = band_of(contest, bounds);
+  std::vector<Tried> all = tried(first_designs(band), contest, recorded, bounds, for_each);
   if (all.empty()) {
     throw ConfigError("--seconds", "no motion of that length within the platform's limits",
                       "a longer run, or wider limits in motion.yaml");
@@ -345,7 +355,7 @@ Plan best_plan(const Contest& contest, const Measurement& recorded, const Bounds
   for (int round = 0; round < kRounds; ++round) {
     const auto seed = static_cast<std::uint64_t>(2 + 2 * round);
     std::vector<Tried> more =
-        tried(around(best_of()->design, bounds, seed), contest, recorded, bounds, for_each);
+        tried(around(best_of()->design, band, seed), contest, recorded, bounds, for_each);
     all.insert(all.end(), std::make_move_iterator(more.begin()),
                std::make_move_iterator(more.end()));
   }
