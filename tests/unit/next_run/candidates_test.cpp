@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/next_run/candidates.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/next_run/two_channels.hpp"
+
+namespace stillhand::next_run {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A body on a ride, and a force of x; z is x and a hundredth of its own.
+diagnosis::Measurement measured() {
+  constexpr std::size_t kCount = 5000;
+  const auto u = diagnosis::made::ride(kCount, 1);
+  const auto x = diagnosis::made::ride(kCount, 2, 0.2, 2.0);
+  std::vector<double> z = diagnosis::made::white(kCount, 3);
+  std::vector<double> y = diagnosis::made::white(kCount, 4);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    z[n] = x[n] + 0.01 * z[n];
+    y[n] = 2.0 * u[n] + x[n] + 0.5 * y[n];
+  }
+  return diagnosis::made::measurement_of(
+      {{"u", "m/s^2", u}, {"x", "-", x}, {"z", "-", z}, {"y", "N", y}});
+}
+
+TEST(CandidatesTest, TwoChannelsThatAreNearlyTheSameAreTied) {
+  const auto recording = measured();
+  diagnosis::DiagnoseOptions options;
+  options.inputs = {"u"};
+  options.output = "y";
+  const diagnosis::Signals signals(recording, {"u"}, "y");
+  const auto sut = tied_candidates(diagnosis::diagnose(recording, options), signals);
+  std::vector<std::string> channels;
+  for (const Candidate& each : sut) {
+    if (each.cause().kind == "coupled_input") channels.push_back(each.cause().channels.front());
+  }
+  EXPECT_THAT(channels, testing::IsSupersetOf({"x", "z"}));
+}
+
+TEST(CandidatesTest, AChannelThatOneReadsTellsThemApart) {
+  auto recording = made::measured(1000, 8, 1);
+  recording.channels[1].unit = "degC";
+  recording.channels[2].unit = "N";
+  const diagnosis::Signals signals(recording, {"u"}, "y");
+  EXPECT_THAT(other_ways(made::candidate("x"), made::candidate("z"), signals),
+              ElementsAre(AllOf(HasSubstr("x"), HasSubstr("cold and warm")),
+                          AllOf(HasSubstr("z"), HasSubstr("firm hold"))));
+  EXPECT_THAT(other_ways(made::candidate("x"), made::candidate("x"), signals), IsEmpty());
+  EXPECT_THAT(other_ways(made::candidate("x"), made::candidate("u"), signals),
+              ElementsAre(HasSubstr("x")));
+}
+
+}  // namespace
+}  // namespace stillhand::next_run
