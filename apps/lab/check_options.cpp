@@ -179,8 +179,10 @@ motion::RideRecord ride_of(const LabOptions& options) {
   const session::ProtocolOptions& protocol = options.protocol;
   const double wanted_s = protocol.planned ? protocol.identify_s : protocol.trial_s;
   if (ride.length_s() < wanted_s) {
-    throw ConfigError(options.ride.string(), fmt::format("{:f} s of ride", ride.length_s()),
-                      fmt::format("at least the trial's {:f}", wanted_s));
+    throw ConfigError(
+        options.ride.string(), fmt::format("{:f} s of ride", ride.length_s()),
+        fmt::format("at least the {} {:f}",
+                    protocol.planned ? "plan's seconds," : "--trial-seconds", wanted_s));
   }
   return ride;
 }

@@ -80,6 +80,15 @@ TEST_F(CheckOptionsTest, ARideAsLongAsTheTrialIsTakenAndAShorterOneIsNot) {
   EXPECT_THAT(refusal(), AllOf(HasSubstr("ride.csv: got 4.5"), HasSubstr("--trial-seconds 5")));
 }
 
+TEST_F(CheckOptionsTest, ARideAsLongAsThePlanIsTakenAndAShorterOneIsNot) {
+  options_.protocol.planned = true;
+  options_.protocol.identify_s = 7.0;
+  options_.ride = ride(7.5);
+  EXPECT_EQ(refusal(), "accepted");
+  options_.ride = ride(6.5);
+  EXPECT_THAT(refusal(), HasSubstr("the plan's seconds, 7"));
+}
+
 TEST_F(CheckOptionsTest, AMouseNeedsAWindow) {
   options_.who = Operator::kMouse;
   EXPECT_EQ(refusal(), "accepted");
