@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -145,6 +146,11 @@ int run(const Arguments& arguments) {
   if (result.no_model) {
     report::say_next(measurement::step_for(result.no_model->reason));
     return 0;
+  }
+  const bool tied =
+      std::ranges::any_of(result.effects, [](const auto& effect) { return !effect.ties.empty(); });
+  if (tied && arguments.plan.empty()) {
+    report::say_next("stillhand plan-run finds the motion that tells the tied causes apart");
   }
   report::say_next(arguments.save.empty()
                        ? "--save MODEL keeps the model, for `stillhand predict`"
