@@ -694,7 +694,7 @@ for name, begin, words in (("ride.db3", b"SQLite format 3\0", "rosbags-convert")
                            ("ride.mcap.zst", b"\x28\xb5\x2f\xfd", "zstd -d"),
                            ("ride.csv.gz", b"\x1f\x8b\x08", "gunzip"), ("ride.csv.bz2", b"BZh91AY&SY", "bunzip2"),
                            ("ride.7z", b"7z\xbc\xaf\x27\x1c", "7z"), ("ride.xlsx", b"PK\x03\x04", "csv"),
-                           ("ride.xls", b"\xd0\xcf\x11\xe0", "csv"), ("ride.tdms", b"TDSm", "nptdms"), ("ride.mf4",
+                           ("ride.xls", b"\xd0\xcf\x11\xe0", "csv"), ("ride.tdms_index", b"TDSh", ".tdms"), ("ride.mf4",
                                                                    b"MDF     ", "asammdf"),
                            ("ride.c3d", b"\x02\x50", "ezc3d"), ("ride.parquet", b"PAR1",
                                                                    "pandas"),
@@ -789,6 +789,124 @@ streams("50 samples lost, and stamps at the first alone", Unusable(""), slope=0.
                                                                                     FORCE[:50]]))
 streams("a chunk that states too many samples", Refused(("byte",)),
         spoil=lambda parts: parts[:5] + [parts[5].replace(struct.pack("<BI", 4, 50), struct.pack("<BI", 4, 51))] + parts[6:])
+# TDMS of LabVIEW (NI, "TDMS File Format Internal Structure")
+
+TDMS_MAP = ["--map", "ride.acc=a_y", "ride.force=f"]
+TDMS_TYPES = {"i2": 2, "f4": 9, "f8": 10}
+META, NEW_LIST, RAW, INTERLEAVED, DAQMX = 2, 4, 8, 32, 128
+AS_BEFORE, NO_RAW = b"\0" * 4, b"\xff" * 4
+
+
+def tdms_text(words):
+    return struct.pack("<I", len(words.encode())) + words.encode()
+
+
+def tdms_value(value):
+    """Type and value of a property; a tuple is a time stamp, seconds since 1904 and 1/2^64."""
+    if isinstance(value, str):
+        return struct.pack("<I", 0x20) + tdms_text(value)
+    if isinstance(value, tuple):
+        return struct.pack("<IQq", 0x44, value[1], value[0])
+    return struct.pack("<II", 7, value) if isinstance(value, int) else struct.pack("<Id", 10, value)
+
+
+def tdms_object(path, index=NO_RAW, properties=None):
+    """`index`: NO_RAW, AS_BEFORE, or type and number of values."""
+    properties = properties or {}
+    if isinstance(index, tuple):
+        index = struct.pack("<IIIQ", 20, TDMS_TYPES[index[0]], 1, index[1])
+    return (tdms_text(path) + index + struct.pack("<I", len(properties)) +
+            b"".join(tdms_text(key) + tdms_value(value) for key, value in properties.items()))
+
+
+def tdms_segment(objects, raw, contents, next_at=None):
+    meta = struct.pack("<I", len(objects)) + b"".join(objects) if objects else b""
+    contents |= (META if objects else 0) | (RAW if raw else 0)
+    next_at = len(meta) + len(raw) if next_at is None else next_at
+    return b"TDSm" + struct.pack("<IIQQ", contents, 4713, next_at, len(meta)) + meta + raw
+
+
+def waveform(unit, start_s=3.84e9, step_s=1.0 / RATE_HZ, **more):
+    return {"wf_start_time": (int(start_s), round((start_s % 1.0) * 2**64)), "wf_start_offset": 0.0,
+            "wf_increment": step_s, "unit_string": unit, **more}
+
+
+def linear(slope, intercept, source=0xFFFFFFFF, number=0, **more):
+    scale = f"NI_Scale[{number}]_"
+    return {"NI_Scaling_Status": "unscaled", "NI_Number_Of_Scales": number + 1, scale + "Scale_Type": "Linear",
+            scale + "Linear_Slope": slope, scale + "Linear_Y_Intercept": intercept,
+            scale + "Linear_Input_Source": source, **more}
+
+
+def tdms(acc=ACC, force=FORCE, kinds=("f8", "f8"), of_acc=None, of_force=None, paths=("/'ride'/'acc'", "/'ride'/'force'"),
+         pieces=(ROWS,), interleaved=False, later=lambda row: {}, contents=0, last=None, again=AS_BEFORE):
+    """A segment for each of the pieces; the first one names the channels, the others say "as before"."""
+    of = [waveform("m/s^2") if of_acc is None else of_acc, waveform("N") if of_force is None else of_force]
+    out, row = [], 0
+    for number, rows in enumerate(pieces):
+        parts = [values[row:row + rows].astype("<" + kind) for values, kind in zip((acc, force), kinds)]
+        if interleaved:
+            raw = numpy.rec.fromarrays(parts).tobytes()
+        else:
+            raw = b"".join(part.tobytes() for part in parts)
+        if number == 0 or rows != pieces[number - 1]:
+            objects = [tdms_object(path, (kind, rows), own if number == 0 else later(row))
+                       for path, kind, own in zip(paths, kinds, of)]
+            objects = ([tdms_object("/"), tdms_object("/'ride'")] if number == 0 else []) + objects
+        else:
+            objects = [tdms_object(path, again, later(row)) for path in paths] if later(row) else []
+        flags = contents | (INTERLEAVED if interleaved else 0) | (NEW_LIST if number == 0 else 0)
+        out.append(tdms_segment(objects, raw, flags, last if rows + row >= ROWS else None))
+        row += rows
+    return b"".join(out)
+
+
+def labview(name, right, words=None, spoil=lambda content: content, **form):
+    def make(folder):
+        path = folder / "ride.tdms"
+        path.write_bytes(spoil(tdms(**form)))
+        return path, TDMS_MAP if words is None else words
+    MEMBERS.append(Member("B11", "TDMS, " + name, make, right))
+
+
+COUNTS = numpy.round(FORCE * 500.0)
+PAUSE = {"pieces": (2000, 2000, 2000),
+         "later": lambda row: {"wf_start_time": (3840000000 + row // 100 + (60 if row >= 4000 else 0), 0)}}
+labview("two channels", Right())
+labview("many segments with \"as before\", and a shorter last one", Right(), pieces=(700,) * 8 + (400,))
+labview("interleaved", Right(), interleaved=True, pieces=(1000,) * 6)
+labview("four chunks in a segment", Right(), spoil=lambda content: content.replace(
+    struct.pack("<IIIQ", 20, 10, 1, ROWS), struct.pack("<IIIQ", 20, 10, 1, ROWS // 4)),
+        acc=numpy.r_[ACC[:1500], FORCE[:1500], ACC[1500:3000], FORCE[1500:3000]],
+        force=numpy.r_[ACC[3000:4500], FORCE[3000:4500], ACC[4500:], FORCE[4500:]])
+labview("scaled whole numbers of 16 bits", Right(), force=COUNTS, kinds=("f8", "i2"),
+        of_force=waveform("N", **linear(0.002, 0.0)))
+labview("a scale of a scale, in kN", Right("times"), force=COUNTS, kinds=("f4", "i2"), of_force=waveform(
+    "kN", **{**linear(2.0, 0.0), **linear(1e-6, 0.0, source=0, number=1)}))
+labview("a recording that was stopped for 60 s", Right("gap"), **PAUSE)
+labview("a recording that was begun again an hour earlier", Refused(("do not go on",)), pieces=(3000, 3000),
+        later=lambda row: {"wf_start_time": (3840000000 - 3600, 0)})
+labview("a writer that was stopped", Right("cut off"), last=2**64 - 1, pieces=(1000,) * 6,
+        spoil=lambda content: content[:-3333])
+labview("cut off, interleaved", Right("cut off"), interleaved=True, spoil=lambda content: content[:-10007])
+labview("no times, and --sample-rate", Right(), of_acc={"unit_string": "m/s^2"}, of_force={"NI_UnitDescription": "N"},
+        words=[*TDMS_MAP, "--sample-rate", "100"])
+labview("no times", Refused(("--sample-rate",)), of_acc={"unit_string": "m/s^2"}, of_force={"unit_string": "N"})
+labview("two groups that started 0.255 s apart", Right("at the times of"), paths=("/'cabin'/'y'", "/'rig''s'/'y'"),
+        words=["--map", "cabin.y=a_y", "rig's.y=f"], of_force=waveform("N", 3.84e9 - 0.255),
+        force=numpy.fft.irfft(numpy.fft.rfft(FORCE) * numpy.exp(
+            -2j * numpy.pi * 0.255 * numpy.fft.rfftfreq(ROWS, 1.0 / RATE_HZ)), ROWS))
+labview("DAQmx raw data", Refused(("DAQmx", "nptdms")), contents=DAQMX)
+labview("a table as scale", Refused(("'Table'", "force")), force=COUNTS, kinds=("f8", "i2"), of_force=waveform(
+    "N", **{**linear(0.002, 0.0), "NI_Scale[0]_Scale_Type": "Table"}))
+labview("scales in a circle", Refused(("circle",)), of_force=waveform("N", **linear(2.0, 0.0, source=0)))
+labview("values that are scaled already, and a scale", Refused(("'scaled'",)),
+        of_force=waveform("N", **{**linear(2.0, 0.0), "NI_Scaling_Status": "scaled"}))
+labview("a chunk that states too many values", Refused(("byte",)), spoil=lambda content: content.replace(
+    struct.pack("<IIIQ", 20, 10, 1, ROWS), struct.pack("<IIIQ", 20, 10, 1, 2**60)))
+labview("the start of the force 0.3 s late", Unusable("leads"), of_force=waveform("N", 3.84e9 - 0.3))
+labview("its rate ten times too high", Refused(("Hz",)), of_acc=waveform("m/s^2", step_s=1e-5),
+        of_force=waveform("N", step_s=1e-5))
 MEMBERS.append(Member("B11", "a folder", lambda folder: (folder, []), Refused(("a folder",))))
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
@@ -120,6 +121,20 @@ void plant_number(std::string& bytes, Random& random) {
   for (std::size_t i = 0, at = below(random, bytes.size() - 7); i < 8; ++i) {
     bytes[at + i] = static_cast<char>(number >> (8 * i));
   }
+}
+
+std::string spoilt_once(std::string bytes, Random& random) {
+  switch (below(random, 3)) {
+    case 0:
+      flip_byte(bytes, random);
+      break;
+    case 1:
+      cut(bytes, random);
+      break;
+    default:
+      plant_number(bytes, random);
+  }
+  return bytes;
 }
 
 struct Count {
@@ -277,19 +292,87 @@ TEST(ReadFuzzTest, ASpoiltXdfFileIsReadOrRefused) {
   Random random(20261127);
   Count count;
   for (int run = 0; run < 2000; ++run) {
-    std::string bytes = good;
-    switch (below(random, 3)) {
-      case 0:
-        flip_byte(bytes, random);
-        break;
-      case 1:
-        cut(bytes, random);
-        break;
-      default:
-        plant_number(bytes, random);
-    }
     SCOPED_TRACE("run " + std::to_string(run));
-    ASSERT_NO_THROW(try_to_read(path, bytes, count, options));
+    ASSERT_NO_THROW(try_to_read(path, spoilt_once(good, random), count, options));
+  }
+  EXPECT_GT(count.read, 200);
+  EXPECT_GT(count.refused, 200);
+}
+
+// Numbers in either byte order; a text has its length in front.
+class Tdms {
+ public:
+  explicit Tdms(bool big_endian) : big_(big_endian) {}
+
+  template <typename Value>
+  Tdms& add(Value value) {
+    std::string bytes = packed(value);
+    if (big_) std::ranges::reverse(bytes);
+    text_ += bytes;
+    return *this;
+  }
+  Tdms& text(const std::string& words) {
+    add(static_cast<std::uint32_t>(words.size()));
+    text_ += words;
+    return *this;
+  }
+  Tdms& number(const std::string& name, double value) {
+    return text(name).add(std::uint32_t{10}).add(value);
+  }
+  // Whole numbers of 32 bits, a row in 10 ms; those of "f" are 10 and half of the raw number.
+  Tdms& channel(const std::string& name) {
+    const bool scaled = name == "f";
+    text("/'g'/'" + name + "'").add(std::uint32_t{20}).add(std::uint32_t{3}).add(std::uint32_t{1});
+    add(std::uint64_t{50}).add(std::uint32_t{scaled ? 5u : 1u}).number("wf_increment", 0.01);
+    if (!scaled) return *this;
+    text("NI_Number_Of_Scales").add(std::uint32_t{7}).add(std::uint32_t{1});
+    text("NI_Scale[0]_Scale_Type").add(std::uint32_t{0x20}).text("Linear");
+    return number("NI_Scale[0]_Linear_Slope", 0.5).number("NI_Scale[0]_Linear_Y_Intercept", 10.0);
+  }
+  [[nodiscard]] const std::string& bytes() const { return text_; }
+
+ private:
+  bool big_;
+  std::string text_;
+};
+
+std::string good_tdms(bool big_endian) {
+  std::ostringstream file;
+  for (int segment = 0; segment < 3; ++segment) {
+    Tdms meta(big_endian);
+    Tdms raw(big_endian);
+    Tdms lead(big_endian);
+    if (segment == 0) meta.add(std::uint32_t{2}).channel("a_y").channel("f");
+    for (const int levels : {7, 5}) {
+      for (int i = 50 * segment; i < 50 * segment + 50; ++i) raw.add(std::int32_t{i % levels});
+    }
+    const std::uint32_t contents = (segment == 0 ? 2u : 0u) | 8u | (big_endian ? 64u : 0u);
+    const std::uint64_t raw_at = meta.bytes().size();
+    lead.add(std::uint32_t{4713}).add(raw_at + raw.bytes().size()).add(raw_at);
+    file << "TDSm" << packed(contents) << lead.bytes() << meta.bytes() << raw.bytes();
+  }
+  return file.str();
+}
+
+TEST(ReadFuzzTest, ASpoiltTdmsFileIsReadOrRefused) {
+  const std::string path = testing::TempDir() + "fuzz.tdms";
+  ReadOptions options;
+  for (const char* wish : {"g.a_y=a_y [m/s^2]", "g.f=f [N]"}) {
+    options.mapping.columns.push_back(parse_wish(wish));
+  }
+  Random random(20261128);
+  Count count;
+  for (const bool big_endian : {false, true}) {
+    const std::string good = good_tdms(big_endian);
+    std::ofstream(path, std::ios::binary) << good;
+    const diagnosis::Measurement read = read_measurement(path, options);
+    ASSERT_EQ(read.size(), 150u);
+    EXPECT_EQ(read.channels[0].values[55], 55 % 7);
+    EXPECT_EQ(read.channels[1].values[149], 10.0 + 0.5 * (149 % 5));
+    for (int run = 0; run < 1500; ++run) {
+      SCOPED_TRACE("run " + std::to_string(run));
+      ASSERT_NO_THROW(try_to_read(path, spoilt_once(good, random), count, options));
+    }
   }
   EXPECT_GT(count.read, 200);
   EXPECT_GT(count.refused, 200);

@@ -308,7 +308,7 @@ TEST(ReadTest, AKindThatIsNotReadIsNamedWithTheLineThatConvertsIt) {
         Case{"\x28\xB5\x2F\xFD rest", "Zstandard", "zstd -d"},
         Case{"\x1F\x8B rest", "gzip", "gunzip"},
         Case{"PK\x03\x04 rest", "zip archive", "libreoffice --convert-to csv"},
-        Case{"TDSm rest", "TDMS", "nptdms"}, Case{"MDF     4.10", "ASAM", "asammdf"},
+        Case{"TDSh rest", "TDMS", ".tdms next to it"}, Case{"MDF     4.10", "ASAM", "asammdf"},
         Case{"#ROSBAG V2.0\n", "ROS 1", "rosbags-convert"}}) {
     const std::string error = complaint(each.bytes);
     EXPECT_THAT(error, HasSubstr(each.kind));

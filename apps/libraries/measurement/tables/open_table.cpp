@@ -10,6 +10,7 @@
 #include "apps/libraries/measurement/tables/bag_table.hpp"
 #include "apps/libraries/measurement/tables/guarded_table.hpp"
 #include "apps/libraries/measurement/tables/table_file.hpp"
+#include "apps/libraries/measurement/tables/tdms_table.hpp"
 #include "apps/libraries/measurement/tables/text_encoding.hpp"
 #include "apps/libraries/measurement/tables/text_table.hpp"
 #include "apps/libraries/measurement/tables/xdf_table.hpp"
@@ -56,9 +57,7 @@ constexpr std::array<ForeignKind, 19> kForeignKinds{{
      "FILE"},
     {"\xD0\xCF\x11\xE0", "an old Excel file (.xls)",
      "a CSV of the sheet: libreoffice --convert-to csv FILE"},
-    {"TDSm", "a TDMS file of LabVIEW",
-     "a CSV: python3 -c \"import nptdms; nptdms.TdmsFile.read('FILE').as_dataframe(time_index=True)"
-     ".to_csv('out.csv')\""},
+    {"TDSh", "the index of a TDMS file (.tdms_index)", "the .tdms next to it"},
     {"MDF ", "a measurement file of ASAM (.mf4)",
      "a CSV: python3 -c \"import asammdf; asammdf.MDF('FILE').export('csv', 'out.csv', "
      "single_time_base=True)\""},
@@ -147,6 +146,7 @@ FileKind kind_of(const std::string& path) {
   if (begin.starts_with("\x89MCAP")) return FileKind::kMcap;
   if (is_any_of(begin, {"MATLAB 5.0", "MATLAB 7.3"})) return FileKind::kMatlab;
   if (begin.starts_with("XDF:")) return FileKind::kXdf;
+  if (begin.starts_with("TDSm")) return FileKind::kTdms;
   if (begin.starts_with("\x89HDF\r\n\x1a\n")) return FileKind::kHdf5;
   if (is_any_of(begin, {"RIFF", "RF64", "riff", "FORM", "fLaC", "caff"})) return FileKind::kSound;
   // MATLAB's versions before 5, and HDF5 behind a user block, have no magic: the name decides.
@@ -170,6 +170,8 @@ std::unique_ptr<TableFile> open_table(const std::string& path, const TextForm& f
       return guarded_table(path, sound_reader(), most_values);
     case FileKind::kXdf:
       return xdf_table(read_text(path), path, most_values);
+    case FileKind::kTdms:
+      return tdms_table(read_text(path), path, most_values);
     case FileKind::kText:
       break;
   }

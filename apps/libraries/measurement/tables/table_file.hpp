@@ -70,7 +70,7 @@ struct TextForm {
   char decimal = 0;    ///< '.' or ','
 };
 
-enum class FileKind { kText, kMcap, kMatlab, kHdf5, kSound, kXdf };
+enum class FileKind { kText, kMcap, kMatlab, kHdf5, kSound, kXdf, kTdms };
 
 /// Kind of a file by its first bytes; of a binary file without any, by its name.
 /// @throws stillhand::ConfigError if it cannot be read, or is of a kind that must be converted:
