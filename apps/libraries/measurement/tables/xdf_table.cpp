@@ -33,6 +33,7 @@ constexpr std::size_t kMostOffsets = 400;  // of more, so many, evenly spread
 // Of the line from a tenth of the clock offsets at least: 2.9 degrees at 4 Hz between two streams.
 constexpr double kWorstOffset_s = 0.002;
 constexpr double kLatest_s = 1e10;
+constexpr double kJump_s = 1.0;        // pyxdf's, between two segments
 constexpr double kLeastStep_s = 1e-3;  // LabRecorder asks every 5 s
 
 struct Stream {
@@ -191,6 +192,47 @@ std::vector<double> on_recorders_clock(const Stream& stream, const std::string& 
   return time_s;
 }
 
+bool go_on(const std::vector<double>& time_s) {
+  const auto stops = [](double a_s, double b_s) { return !(b_s > a_s && b_s < kLatest_s); };
+  return std::ranges::adjacent_find(time_s, stops) == time_s.end();
+}
+
+// Eq. ME-20.  @param first, end  rows of a segment  @returns false if its stamps have no such line
+bool make_even(std::vector<double>& time_s, std::size_t first, std::size_t end, double rate_hz) {
+  constexpr std::size_t kParts = 8;
+  constexpr std::size_t kLeastRows = 25;  // of a part
+  constexpr double kRateWithin = 0.005;   // of the nominal one: rows are missing, or it is not that
+  const std::size_t rows = end - first;
+  if (rows < kParts * kLeastRows) return false;
+  const double middle = 0.5 * static_cast<double>(rows - 1);
+  double mean_s = 0.0, products = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    mean_s += (time_s[first + i] - time_s[first]) / static_cast<double>(rows);
+    products += (static_cast<double>(i) - middle) * (time_s[first + i] - time_s[first]);
+    squares += std::pow(static_cast<double>(i) - middle, 2.0);
+  }
+  const double step_s = products / squares;
+  if (!(std::abs(step_s * rate_hz - 1.0) < kRateWithin)) return false;
+  const double start_s = time_s[first] + mean_s - middle * step_s;
+  std::array<double, kParts> off_s{};
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double even_s = start_s + static_cast<double>(i) * step_s;
+    off_s[i * kParts / rows] += (time_s[first + i] - even_s) * kParts / static_cast<double>(rows);
+    time_s[first + i] = even_s;
+  }
+  return std::ranges::all_of(off_s, [](double each) { return std::abs(each) < kWorstOffset_s; });
+}
+
+// Each segment without a jump, of a stream with a rate.
+bool make_even(std::vector<double>& time_s, double rate_hz) {
+  for (std::size_t first = 0, i = 1; i <= time_s.size(); ++i) {
+    if (i < time_s.size() && std::abs(time_s[i] - time_s[i - 1]) < kJump_s) continue;
+    if (rate_hz == 0.0 || !make_even(time_s, first, i, rate_hz)) return false;
+    first = i;
+  }
+  return true;
+}
+
 class XdfTable : public TableFile {
  public:
   using Column = std::pair<std::size_t, std::size_t>;  // stream, channel
@@ -206,11 +248,17 @@ class XdfTable : public TableFile {
     for (auto& [number, time_s] : times) {
       const Stream& stream = file_.streams[number];
       time_s = on_recorders_clock(stream, head().path);
-      const auto stops = [](double a_s, double b_s) { return !(b_s > a_s && b_s < kLatest_s); };
-      if (std::ranges::adjacent_find(time_s, stops) != time_s.end()) {
-        throw ConfigError(head().path, "time stamps of '" + stream.name + "' that do not go on",
-                          "stamps that increase; pyxdf.load_xdf() evens those of chunks that came "
-                          "unevenly: save its arrays as CSV");
+      if (!go_on(time_s)) {
+        if (!make_even(time_s, stream.rate_hz) || !go_on(time_s)) {
+          throw ConfigError(head().path, "time stamps of '" + stream.name + "' that do not go on",
+                            "stamps that increase, or that their number puts within 2 ms on the "
+                            "mean of each eighth; pyxdf.load_xdf() evens others, too: save its "
+                            "arrays as CSV");
+        }
+        out.notes.push_back(
+            "Stamps of " + stream.name +
+            " overlap, as of chunks that came "
+            "unevenly: its rows are spread evenly over each stretch without a jump.");
       }
       if (times.size() > 1 && stream.offset_s.empty()) {
         throw ConfigError(head().path, "no clock offsets of '" + stream.name + "'",
