@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace stillhand::identify {
 namespace {
@@ -38,31 +37,6 @@ struct Sums {
     return yy - 2.0 * m * y + n * m * m - gain_at_level(m) * (py - m * p);
   }
 };
-
-// The rows beyond a limit at one end.
-struct End {
-  double limit = 0.0;
-  std::size_t rows = 0;
-  double saved = 0.0;  // squared error, of that without a limit
-};
-
-// `z`, `y`: from the end inwards, at most half of the rows.  The limit is the mean of y beyond it.
-End end_of(const std::vector<double>& z, const std::vector<double>& y, double outwards) {
-  End best{outwards * std::numeric_limits<double>::infinity(), 0, 0.0};
-  double sum = 0.0;
-  double squares = 0.0;
-  double free = 0.0;
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    sum += y[i];
-    squares += y[i] * y[i];
-    free += (y[i] - z[i]) * (y[i] - z[i]);
-    const auto rows = static_cast<double>(i + 1);
-    const double saved = free - (squares - sum * sum / rows);
-    if (outwards * sum / rows <= outwards * z[i] && saved > best.saved)
-      best = {sum / rows, i + 1, saved};
-  }
-  return best;
-}
 
 }  // namespace
 
@@ -111,45 +85,6 @@ Change change_of(const std::vector<double>& y, const std::vector<double>& p) {
     for (std::size_t i = from.end - near; i <= std::min(from.end + near, y.size()); ++i) {
       if (i > first) look_at(first, i);
     }
-  }
-  return best;
-}
-
-Limit limit_of(const std::vector<double>& y, const std::vector<double>& p) {
-  constexpr std::size_t kMostRows = 5000;
-  constexpr int kGains = 30;
-  constexpr double kGainStep = 1.05;  // to 4.1: a limit that lets a quarter of the gain through
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < y.size(); i += y.size() / kMostRows + 1) order.push_back(i);
-  std::ranges::sort(order, {}, [&](std::size_t i) { return p[i]; });
-  const std::size_t n = order.size();
-  Sums all;
-  for (const std::size_t i : order) all.add(p[i], y[i]);
-  Limit best;
-  double gain = all.gain();
-  for (int step = 0; step < kGains; ++step, gain *= kGainStep) {
-    // The middle half of the rows lies within both limits; so does its level.
-    double level = 0.0;
-    for (std::size_t k = n / 4; k < n / 4 + n / 2; ++k) {
-      level += (y[order[k]] - gain * p[order[k]]) / static_cast<double>(n / 2);
-    }
-    double error = 0.0;
-    std::vector<double> z[2], of_y[2];
-    for (std::size_t k = 0; k < n; ++k) {
-      const double predicted = gain * p[order[k]] + level;
-      error += (y[order[k]] - predicted) * (y[order[k]] - predicted);
-      const std::size_t at = 2 * k < n ? 0 : 1;
-      z[at].push_back(predicted);
-      of_y[at].push_back(y[order[k]]);
-    }
-    std::ranges::reverse(z[1]);
-    std::ranges::reverse(of_y[1]);
-    const End low = end_of(z[0], of_y[0], -1.0);
-    const End high = end_of(z[1], of_y[1], 1.0);
-    const double ratio = (error - low.saved - high.saved) / all.error();
-    if (ratio >= best.error_ratio) continue;
-    best = {low.limit, high.limit,
-            static_cast<double>(low.rows + high.rows) / static_cast<double>(n), ratio};
   }
   return best;
 }

@@ -23,19 +23,4 @@ struct Change {
 /// of a hundredth of the record first.  Pure.  @param y, p  one length, at least 40
 Change change_of(const std::vector<double>& y, const std::vector<double>& p);
 
-/// Levels at which the output stops following a model's prediction p of it:
-///
-///   y = clip(gain p + level, low, high)
-///
-/// Of an input of Gauss' distribution a limit lets through a smaller gain, and else the body's
-/// response (Bussgang, 1952), so that the prediction has the shape of the force without a limit.
-struct Limit {
-  double low = 0.0, high = 0.0;  ///< [unit of y]
-  double share = 0.0;            ///< [-] of the rows beyond
-  double error_ratio = 1.0;      ///< [-] squared error over that of y = gain p + level
-};
-
-/// Pure.  Of up to 5000 rows, evenly spread.  @param y, p  as above
-Limit limit_of(const std::vector<double>& y, const std::vector<double>& p);
-
 }  // namespace stillhand::identify

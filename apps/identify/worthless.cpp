@@ -11,6 +11,7 @@
 #include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/before_effects.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
+#include "services/core/diagnosis/limit.hpp"
 #include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::identify {
@@ -125,7 +126,7 @@ std::string why_stepped(const IdentifyOptions& options, const identification::Re
 // A limit with noise on top, whose rows are not equal.
 std::string why_limited(const IdentifyOptions& options, const identification::Record& fitted,
                         const std::vector<double>& predicted, const std::string& unit) {
-  const Limit limit = limit_of(fitted.force_n, predicted);
+  const diagnosis::Limit limit = diagnosis::limit_of(fitted.force_n, predicted);
   if (limit.share <= diagnosis::kMostClipped || limit.error_ratio >= kBetterReading) return {};
   std::string ends;
   for (const double end : {limit.low, limit.high}) {
@@ -202,6 +203,11 @@ std::optional<NoModel> why_worthless(const Measurement& measurement, const Ident
   if (left < 0.5 && !mass.empty()) return NoModel{"unit", std::move(mass)};
   if (std::string why = why_changed(options, fitted, result); !why.empty()) {
     return NoModel{"effects", std::move(why)};
+  }
+  if (left > diagnosis::kMostClipped * diagnosis::kMostClipped) {
+    std::string why = diagnosis::limit_in_words(options.input, fitted.acceleration_m_s2,
+                                                options.output, fitted.force_n, fitted.rate_hz);
+    if (!why.empty()) return NoModel{"samples", std::move(why)};
   }
   if (std::string why = why_exchanged(options, fitted, left); !why.empty()) {
     return NoModel{"swapped", std::move(why)};

@@ -381,16 +381,30 @@ def held_unevenly(x):
     return numpy.repeat(x[numpy.minimum(numpy.r_[0, numpy.cumsum(lengths)[:-1]], ROWS - 1)], lengths)[:ROWS]
 
 
-for share in (0.003, 0.03, 0.1):
+for share in (0.003, 0.03, 0.1, 0.2):
     spoilt("A3", f"acceleration held for 2 to 9 rows behind a noise of {share:.1%}", Unusable(("a_y", "held")),
            acc=noisy(held_unevenly, share))
-spoilt("A3", "force held for 2 to 9 rows behind a noise of 3 %", Unusable(("f", "held")),
-       force=noisy(held_unevenly, 0.03))
+for share in (0.03, 0.1):
+    spoilt("A3", f"force held for 2 to 9 rows behind a noise of {share:.0%}", Unusable(("f", "held")),
+           force=noisy(held_unevenly, share))
 spoilt("A3", "force held at 20 Hz behind a noise of 2 %", Unusable(("f", "held")), force=noisy(held(5), 0.02))
-spoilt("A3", "acceleration in straight lines from 25 Hz behind a noise of 3 %", Unusable(("a_y", "held")),
-       acc=noisy(lambda x: numpy.interp(TIME, TIME[::4], x[::4]), 0.03))
-spoilt("A3", "force in straight lines from 20 Hz behind a noise of 1 %", Unusable(("f", "held")),
-       force=noisy(lambda x: numpy.interp(TIME, TIME[::5], x[::5]), 0.01))
+
+
+def in_lines(hz):
+    return lambda x: numpy.interp(TIME, numpy.arange(0.0, TIME[-1] + 1.0 / hz, 1.0 / hz), numpy.interp(
+        numpy.arange(0.0, TIME[-1] + 1.0 / hz, 1.0 / hz), TIME, x))
+
+
+for hz in (10, 20, 25, 30):
+    for share in (0.01, 0.03):
+        spoilt("A3", f"acceleration in straight lines from {hz:.3g} Hz behind a noise of {share:.0%}",
+               Unusable(("a_y", "held")), acc=noisy(in_lines(hz), share))
+        spoilt("A3", f"force in straight lines from {hz:.3g} Hz behind a noise of {share:.0%}",
+               Unusable(("f", "held")), force=noisy(in_lines(hz), share))
+for percent, noise in ((20, 0.02), (40, 0.02), (40, 0.2), (68, 0.05)):
+    spoilt("A3", f"acceleration clipped in {percent} % of the rows, behind a noise of {noise:.0%}",
+           Unusable("did not see"),
+           acc=noisy(lambda x, beyond=percent / 200: x.clip(*numpy.quantile(x, [beyond, 1.0 - beyond])), noise))
 for percent, noise in ((40, 0.01), (40, 0.2), (10, 0.05)):
     spoilt("A3", f"force clipped in {percent} % of the rows, behind a noise of {noise:.0%}", Unusable("a limit or"),
            force=noisy(lambda x, beyond=percent / 200: x.clip(*numpy.quantile(x, [beyond, 1.0 - beyond])), noise))
@@ -736,7 +750,7 @@ def xdf_samples(number, stamps, values, code="d"):
 
 
 def xdf(folder, stamp=lambda i, time_s: time_s, slope=2e-5, offset_s=-4321.5, offsets=lambda at_s, by_s: by_s,
-        force=FORCE, unit="N", form=("double64", "d"), spoil=lambda parts: parts):
+        force=FORCE, unit="N", form=("double64", "d"), pause_s=0.0, spoil=lambda parts: parts):
     """The platform by the recorder's clock, the stick by one that is `offset_s` behind and runs `slope` faster."""
     parts = [b"XDF:", chunk(1, b"<?xml version=\"1.0\"?><info><version>1.0</version></info>"),
              xdf_header(7, "platform", [("y", "m/s^2")]), xdf_header(2, "stick", [("force", unit)], form[0]),
@@ -744,7 +758,7 @@ def xdf(folder, stamp=lambda i, time_s: time_s, slope=2e-5, offset_s=-4321.5, of
     random = numpy.random.default_rng(3)
     for first in range(0, ROWS, 50):
         rows = range(first, min(first + 50, ROWS))
-        at = [RECORDER_S + TIME[i] for i in rows]
+        at = [RECORDER_S + TIME[i] + pause_s * (i >= 4500) for i in rows]
         parts.append(xdf_samples(7, at, ACC[first:first + 50]))
         theirs = [stamp(i, (t - offset_s) / (1.0 + slope)) for i, t in zip(rows, at)]
         parts.append(xdf_samples(2, theirs, force[first:first + 50], form[1]))
@@ -784,6 +798,13 @@ streams("a clock that was set by 0.5 s", Refused(("clock offsets of 'stick'",)),
         offsets=lambda at_s, by_s: by_s + 0.5 * (at_s > 30.0))
 streams("stamps that go back", Refused(("do not go on",)),
         stamp=lambda i, time_s: time_s - 5.0 * (i >= 3000))
+UNEVEN_S = numpy.random.default_rng(5).uniform(-8e-3, 8e-3, ROWS // 10)  # of chunks of 10 rows
+streams("chunks that came unevenly, whose stamps overlap", Right("overlap"),
+        stamp=lambda i, time_s: time_s + UNEVEN_S[i // 10])
+streams("chunks whose stamps overlap, and a pause of 2 s", Right("overlap"),
+        stamp=lambda i, time_s: time_s + UNEVEN_S[i // 10], pause_s=2.0)
+streams("chunks whose stamps overlap, and 30 samples lost", Refused(("do not go on",)),
+        stamp=lambda i, time_s: time_s + UNEVEN_S[i // 10] + 0.3 * (i >= 3000))
 streams("50 samples lost, and stamps at the first alone", Unusable(""), slope=0.0,
         stamp=lambda i, time_s: time_s if i == 0 else None, force=numpy.concatenate([FORCE[:3000], FORCE[3050:],
                                                                                     FORCE[:50]]))

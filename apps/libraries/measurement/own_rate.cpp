@@ -51,9 +51,12 @@ std::complex<double> line_at(const std::vector<double>& s, double per_row) {
   return sum;
 }
 
-// The largest line within half a bin of one: its frequency [1/row], and its value.
-std::pair<double, std::complex<double>> line_near(const std::vector<double>& s, std::size_t bin) {
-  std::pair<double, std::complex<double>> best;
+// A line of a spectrum: its frequency [1/row], and its value.
+using Line = std::pair<double, std::complex<double>>;
+
+// The largest line within half a bin of one.
+Line line_near(const std::vector<double>& s, std::size_t bin) {
+  Line best;
   for (int part = -5; part <= 5; ++part) {
     const double at = (static_cast<double>(bin) + 0.1 * part) / static_cast<double>(s.size());
     const double per_row = std::min(at, 0.5);
@@ -61,6 +64,29 @@ std::pair<double, std::complex<double>> line_near(const std::vector<double>& s, 
     if (std::abs(line) > std::abs(best.second)) best = {per_row, line};
   }
   return best;
+}
+
+// The lowest of the largest lines, as those of a comb are alike; none, if they are below `least`.
+Line first_line(const std::vector<double>& s, double least) {
+  constexpr double kBetweenBins = 0.6;  // of a line, what the bins next to it show at least
+  constexpr double kAlike = 0.85;
+  constexpr std::size_t kMostLines = 40;
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> lines;
+  fft.fwd(lines, s);
+  const std::size_t half = s.size() / 2;
+  double top = 0.0;
+  for (std::size_t k = 2; k <= half; ++k) top = std::max(top, std::abs(lines[k]));
+  if (top < kBetweenBins * least) return {};
+  std::vector<Line> large;
+  for (std::size_t k = 2; k <= half && large.size() < kMostLines; ++k) {
+    if (std::abs(lines[k]) >= kBetweenBins * top) large.push_back(line_near(s, k));
+  }
+  const auto size = [](const Line& line) { return std::abs(line.second); };
+  const double largest = size(std::ranges::max(large, {}, size));
+  if (largest < least) return {};
+  return *std::ranges::find_if(large,
+                               [&](const Line& line) { return size(line) >= kAlike * largest; });
 }
 
 // Steps at the knots of values held, and what the rows between them move: nothing, where a value is
@@ -91,17 +117,42 @@ bool are_held(const std::vector<double>& e, double per_row, double phase, bool s
   return std::abs(between) < kMostBetween * squares && (!slow || onwards > 0.0);
 }
 
-// A line bends into the next; a jump bends there and back, by -1/2 from row to row.  Noise has -2/3
-// there, and makes up at most 0.4 of what is left to it.
-bool are_bends(const std::vector<double>& e) {
-  constexpr double kMostBack = 0.4;
-  double products = 0.0;
-  double squares = 0.0;
-  for (std::size_t i = 1; i < e.size(); ++i) {
-    products += e[i] * e[i - 1];
-    squares += e[i] * e[i];
+// At a knot a line bends into the next; a jump bends there and back.  Noise does so everywhere, and
+// is known from the rows between.
+bool are_bends(const std::vector<double>& e, double per_row, double phase) {
+  constexpr double kMostBack = 0.25;         // of a bend; a jump has a half or more
+  constexpr double kNoiseTurns = 2.0 / 3.0;  // of its bends
+  double knots = 0.0, at_knots = 0.0, next_to = 0.0;
+  const double first = std::fmod(-phase / (2.0 * std::numbers::pi) + 1.0, 1.0) / per_row;
+  for (double at = first; at + 2.0 < static_cast<double>(e.size()); at += 1.0 / per_row) {
+    if (at < 1.0) continue;
+    const auto knot = static_cast<std::size_t>(std::lround(at));
+    knots += 1.0;
+    at_knots += e[knot] * e[knot];
+    next_to += 0.5 * e[knot] * (e[knot - 1] + e[knot + 1]);
   }
-  return products > -kMostBack * squares;
+  double squares = 0.0, products = 0.0;
+  for (std::size_t i = 1; i < e.size(); ++i) {
+    squares += e[i] * e[i];
+    products += e[i] * e[i - 1];
+  }
+  const double others = static_cast<double>(e.size()) - knots;
+  const double noise = (squares - at_knots) / others;
+  // From every second row on, each row is next to a knot.
+  const double turns =
+      per_row < 0.4 ? (products - 2.0 * next_to) / (others - knots) : -kNoiseTurns * noise;
+  return next_to / knots - turns >= -kMostBack * (at_knots / knots - noise);
+}
+
+// A hum is a line of half the frequency itself, or of what that is an alias of; the share of it is
+// twice the line of its squares.  @param line  over the sum of the squares
+bool is_hum(const std::vector<double>& e, double per_row, double line) {
+  double squares = 0.0;
+  for (const double each : e) squares += each * each;
+  const double most =
+      std::max(std::norm(line_at(e, 0.5 * per_row)), std::norm(line_at(e, 0.5 * (1.0 - per_row))));
+  const double share = 2.0 * most / (static_cast<double>(e.size()) * squares);
+  return share > 0.5 * line;
 }
 
 }  // namespace
@@ -117,44 +168,37 @@ double chord_error(const std::vector<double>& x, double rows) {
 }
 
 double comb_rows(const std::vector<double>& values, int order, double rate_hz) {
-  // Knots at the nearest row leave sinc(1/k) of a line.  The squares of a sine have one of 0.5.
-  constexpr double kLeastLine = 0.6;
-  constexpr double kBetweenBins = 0.6;  // of a line, what the bins next to it show at least
   constexpr std::size_t kFewestRows = 256;
   const std::vector<double> e = differences_of(values, order);
   if (e.size() < kFewestRows) return 0.0;
   std::vector<double> squares = capped_squares(e);
   const double sum = std::reduce(squares.begin(), squares.end());
   const auto rows = static_cast<double>(squares.size());
+  for (double& each : squares) each -= sum / rows;
+  // Knots of values held, at the nearest row, leave sinc(1/k) of a line.  The squares of a sine
+  // have one of 0.5, and no second one; those of noise have chance, 2 to 4 over the root of the
+  // rows.
+  const double least = order == 1 ? 0.6 : std::clamp(8.0 / std::sqrt(rows), 0.12, 0.6);
+  const auto [per_row, line] = first_line(squares, least * sum);
+  if (per_row * rate_hz < kSlowest_hz) return 0.0;
+  const bool has_second = per_row <= 0.25;
+  if (has_second && std::abs(line_at(squares, 2.0 * per_row)) < 0.5 * std::abs(line)) return 0.0;
+  if (order == 2) {
+    constexpr double kLeastAlone = 0.2;  // what a hum and a motion beat with is below
+    const double part = std::abs(line) / sum;
+    if (!has_second && (part < kLeastAlone || is_hum(e, per_row, part))) return 0.0;
+    return are_bends(e, per_row, std::arg(line)) ? 1.0 / per_row : 0.0;
+  }
+  // A motion of 10 Hz in steps of 40 Hz turns by a quarter from one to the next.
+  const bool slow = rate_hz * per_row >= 4.0 * kFastest_hz;
   // What a step costs: see held_rows().
   const double deviation = deviation_of(values);
-  const auto steps_cost = [&](double step_rows) {
-    return step_rows * sum / rows / 3.0 >= kLeastError * deviation * deviation;
-  };
-  for (double& each : squares) each -= sum / rows;
-  Eigen::FFT<double> fft;
-  std::vector<std::complex<double>> lines;
-  fft.fwd(lines, squares);
-  for (std::size_t k = 2; k <= squares.size() / 2; ++k) {
-    if (!(std::abs(lines[k]) > kBetweenBins * kLeastLine * sum)) continue;
-    if (static_cast<double>(k) < kSlowest_hz / rate_hz * rows) return 0.0;
-    const auto [per_row, line] = line_near(squares, k);
-    if (std::abs(line) < kLeastLine * sum) continue;
-    // Of four rows or more, the second line of a comb is 0.7 of the first or more.
-    if (per_row <= 0.25 && std::abs(line_at(squares, 2.0 * per_row)) < 0.5 * std::abs(line)) {
-      return 0.0;
-    }
-    // A motion of 10 Hz in steps of 40 Hz turns by a quarter from one to the next.
-    const bool slow = rate_hz * per_row >= 4.0 * kFastest_hz;
-    if (order == 1 && !are_held(e, per_row, std::arg(line), slow)) return 0.0;
-    if (order == 2 && !are_bends(e)) return 0.0;
-    return order == 2 || steps_cost(1.0 / per_row) ? 1.0 / per_row : 0.0;
-  }
-  return 0.0;
+  const bool costs = sum / rows / per_row / 3.0 >= kLeastError * deviation * deviation;
+  return costs && are_held(e, per_row, std::arg(line), slow) ? 1.0 / per_row : 0.0;
 }
 
 double uneven_rows(const std::vector<double>& values, double rate_hz) {
-  constexpr double kLarge = 4.0;  // deviations: 6e-5 of Gauss' noise, 0.016 of Laplace's
+  constexpr double kLarge = 2.2;  // deviations: 0.028 of Gauss' noise
   constexpr double kLeastShare = 0.05;
   constexpr double kOnwards = 0.25;  // friction and commands of two levels turn at each jump
   constexpr double kOneWay = 0.2;    // a sawtooth jumps back alone

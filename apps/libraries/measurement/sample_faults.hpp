@@ -49,11 +49,10 @@ std::optional<BadRows> dropped_in(const std::vector<double>& values, double rate
 /// Rows for which a value is held, on the mean; 0: it is not held.
 double held_rows(const std::vector<double>& values, const std::vector<Place>& runs, double rate_hz);
 /// The same of values held (`order` 1) or straight lines (2) behind a noise: over the rows, the
-/// squares of the first or second differences are then a comb, whose lines are as large as their
-/// mean.  From 10 Hz on; of 32,768 rows.
+/// squares of the first or second differences are then a comb.  From 8 Hz on; of 32,768 rows.
 double comb_rows(const std::vector<double>& values, int order, double rate_hz);
 /// Rows, on the mean, for which values are held unevenly behind a noise; 0: they are not.  Steps
-/// above four deviations of the usual ones are then many, and alone.  Of 32,768 rows.
+/// above 2.2 deviations of the usual ones are then many, and alone.  Of 32,768 rows.
 double uneven_rows(const std::vector<double>& values, double rate_hz);
 /// Rows from knot to knot of straight lines, as an interpolation from a lower rate leaves them; 0:
 /// there are none.

@@ -12,6 +12,7 @@
 #include "services/core/diagnosis/digits.hpp"
 #include "services/core/diagnosis/fitting/baseline.hpp"
 #include "services/core/diagnosis/fitting/held_out.hpp"
+#include "services/core/diagnosis/limit.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/selection.hpp"
 #include "services/core/diagnosis/share_words.hpp"
@@ -231,6 +232,21 @@ std::string mass_of(const Signals& signals, const Rest& rest) {
                         std::sqrt(1.0 - rest.left) * rest.still_rmse});
 }
 
+// Eq. DG-85, in the longest stretch.
+std::string limit_of_input(const Signals& signals) {
+  if (signals.inputs().size() != 1) return {};
+  const auto length = [](const Stretch& each) { return each.end - each.first; };
+  const Stretch& longest = std::ranges::max(signals.stretches(), {}, length);
+  const auto part = [&](const Signal& signal) {
+    const auto begin = signal.values.begin();
+    return std::vector<double>(begin + static_cast<std::ptrdiff_t>(longest.first),
+                               begin + static_cast<std::ptrdiff_t>(longest.end));
+  };
+  const Signal& input = signals.inputs().front();
+  return limit_in_words(input.name, part(input), signals.output().name, part(signals.output()),
+                        signals.rate_hz());
+}
+
 }  // namespace
 
 std::optional<NoModel> before_any_fit(const Measurement& measurement,
@@ -275,6 +291,11 @@ std::optional<NoModel> no_model_of(const Measurement& measurement, const Signals
   if (left < kClearlyLess) {
     std::string why = mass_of(signals, rest);
     if (!why.empty()) return NoModel{"unit", std::move(why)};
+  }
+  if (left > kMostClipped * kMostClipped) {
+    if (std::string why = limit_of_input(signals); !why.empty()) {
+      return NoModel{"samples", std::move(why)};
+    }
   }
   const OtherReadings others(measurement, signals, left, order);
   if (auto other = others.one_of_several()) return other;

@@ -213,6 +213,17 @@ TEST(SampleScreenTest, GoodChannelsHaveNoFault) {
               [](std::size_t n, double) {
                 return std::clamp(std::abs(static_cast<double>(n % 400) - 200.0) / 100.0, 0.5, 1.5);
               }),
+      // A hum of a quarter of the rate, and one that is no part of it, on a motion.
+      channel("hum", "N",
+              [&noise](std::size_t n, double t_s) {
+                return std::sin(4.0 * t_s) + 0.02 * noise() +
+                       0.3 * std::sin(0.5 * std::numbers::pi * static_cast<double>(n) + 0.7);
+              }),
+      channel("motor", "N",
+              [&noise](std::size_t n, double t_s) {
+                return std::sin(4.0 * t_s) + 0.02 * noise() +
+                       0.3 * std::sin(0.5878 * std::numbers::pi * static_cast<double>(n));
+              }),
       channel("small", "m/s^2", [&noise](std::size_t, double) { return 1e-9 * noise(); })};
   for (const recording::Column& channel : channels) {
     Recording rows = spoiled::known_body();
