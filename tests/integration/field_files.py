@@ -401,7 +401,7 @@ for hz in (10, 20, 25, 30):
                Unusable(("a_y", "held")), acc=noisy(in_lines(hz), share))
         spoilt("A3", f"force in straight lines from {hz:.3g} Hz behind a noise of {share:.0%}",
                Unusable(("f", "held")), force=noisy(in_lines(hz), share))
-for percent, noise in ((20, 0.02), (40, 0.02), (40, 0.2), (68, 0.05)):
+for percent, noise in ((10, 0.02), (20, 0.02), (40, 0.02), (40, 0.2), (68, 0.05)):
     spoilt("A3", f"acceleration clipped in {percent} % of the rows, behind a noise of {noise:.0%}",
            Unusable("did not see"),
            acc=noisy(lambda x, beyond=percent / 200: x.clip(*numpy.quantile(x, [beyond, 1.0 - beyond])), noise))

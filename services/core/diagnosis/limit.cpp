@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/measurement.hpp"
 #include "services/core/diagnosis/share_words.hpp"
 
@@ -129,15 +130,18 @@ std::string limit_in_words(const std::string& input, const std::vector<double>& 
                            double rate_hz) {
   constexpr double kRate_hz = 50.0;  // five times a hand's fastest
   constexpr double kReach_s = 0.4;   // the inverse of a body answers within a period of 2.5 Hz
-  constexpr double kBetter = 0.5;    // of the squared error
+  constexpr double kBetter = 0.6;    // of the squared error; a hardening spring leaves 0.71
   constexpr std::size_t kLeastRows = 500;  // ten for each of the filter's
   const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(rate_hz / kRate_hz + 1e-6));
   const std::vector<double> seen = means_of(x, rows);
   if (seen.size() < kLeastRows) return {};
   const double step_hz = rate_hz / static_cast<double>(rows);
-  const Limit limit = limit_of(
-      seen, shown_by(seen, means_of(y, rows), static_cast<std::size_t>(kReach_s * step_hz)));
-  if (limit.share <= kMostClipped || !(limit.error_ratio < kBetter)) return {};
+  const std::vector<double> shown =
+      shown_by(seen, means_of(y, rows), static_cast<std::size_t>(kReach_s * step_hz));
+  if (likeness(seen, shown).share < 0.5) return {};
+  const Limit limit = limit_of(seen, shown);
+  // The rows just beyond a limit are not counted: of 6 % in all 4 %.
+  if (limit.share <= 0.5 * kMostClipped || !(limit.error_ratio < kBetter)) return {};
   return output + " shows that " + input + " went on where it stays at a limit, in " +
          share_in_words(limit.share) +
          " of the rows: what its sensor did not see is unknown, and the model's gain is wrong by "
