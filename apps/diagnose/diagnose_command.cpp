@@ -197,6 +197,7 @@ void add_diagnose_command(CLI::App& cli, int& status) {
                    "plan.json of `stillhand plan-run`: the last REC is its run, and the verb says "
                    "which of the tied causes is left")
       ->check(settings::check_name);
+  measurement::add_heaviest_option(*verb, arguments->options.heaviest_kg);
   verb->add_option("--save", arguments->save,
                    "file for the diagnosed model, for `stillhand predict`")
       ->check(settings::check_name);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/excited_band.hpp"
 #include "services/core/diagnosis/measurement.hpp"
 #include "services/core/identification/frequency_response.hpp"
@@ -17,6 +18,7 @@ struct IdentifyOptions {
   std::string input = "a_y";
   std::string output = "f";
   identification::Config config;
+  double heaviest_kg = diagnosis::kHeaviestHand_kg;  ///< [kg] that a force shows at most, Eq. DG-80
 };
 
 /// Lowest minimum in frequency, 0.5 to 10 Hz, from which the gain rises by 1 dB to either side.

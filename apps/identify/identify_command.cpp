@@ -120,6 +120,7 @@ void add_identify_command(CLI::App& cli, int& status) {
       "--trial", arguments->read.trial,
       "trial of a session: number, or letter of its condition (I, A, B, C) [identification]");
   measurement::add_read_options(*verb, arguments->read);
+  measurement::add_heaviest_option(*verb, arguments->identify.heaviest_kg);
   verb->add_option("--save", arguments->save,
                    "file for the model, in the form that cancellation reads")
       ->check(settings::check_name);

@@ -199,7 +199,8 @@ std::optional<NoModel> why_worthless(const Measurement& measurement, const Ident
   const double left = 1.0 - 0.01 * result.model.heldout.free_run_vaf_percent;
   std::string mass = diagnosis::unlikely_mass(
       {options.input, result.input_unit, rms_about_mean(fitted.acceleration_m_s2), options.output,
-       result.output_unit, std::sqrt(std::max(0.0, 1.0 - left)) * rms_about_mean(fitted.force_n)});
+       result.output_unit, std::sqrt(std::max(0.0, 1.0 - left)) * rms_about_mean(fitted.force_n),
+       options.heaviest_kg});
   if (left < 0.5 && !mass.empty()) return NoModel{"unit", std::move(mass)};
   if (std::string why = why_changed(options, fitted, result); !why.empty()) {
     return NoModel{"effects", std::move(why)};

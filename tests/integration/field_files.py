@@ -323,6 +323,10 @@ spoilt("A2", "the force leads by 0.05 s", Unusable("leads"), force=lambda x: num
 spoilt("A2", "force a thousand times too large", Unusable("unit"), force=lambda x: 1e3 * x)
 spoilt("A2", "force a thousand times too small", Unusable("unit"), force=lambda x: 1e-3 * x)
 spoilt("A2", "acceleration in mm/s^2 as m/s^2", Unusable("unit"), acc=lambda x: 1e3 * x)
+spoilt("A2", "a machine of 2 t, which is stated", Assumed("units as the columns state", 1e3), force=lambda x: 1e3 * x,
+       words=[*MAP, "--heaviest", "5000"])
+spoilt("A2", "a machine of 2 t, of which 1 t is stated", Unusable("what was stated is"), force=lambda x: 1e3 * x,
+       words=[*MAP, "--heaviest", "1000"])
 spoilt("A2", "columns exchanged", Unusable("swap"), acc=lambda x: FORCE, force=lambda x: ACC)
 spoilt("A2", "columns exchanged, the force in kN", Refused(("excitation",)), acc=lambda x: 1e-3 * FORCE,
        force=lambda x: ACC)

@@ -75,6 +75,15 @@ std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options)
   return {map, file, rate, separator, decimal};
 }
 
+void add_heaviest_option(CLI::App& verb, double& heaviest_kg) {
+  verb.add_option("--heaviest", heaviest_kg,
+                  "mass [kg] that a force in N may show over an acceleration in m/s^2: more is "
+                  "taken for a wrong unit. State it for a machine, such as a shaking table")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(kGroup);
+}
+
 std::string words_of(const ReadOptions& options) {
   if (!options.map_file.empty()) {
     return " --map-file " + report::quoted_for_shell(options.map_file);
@@ -108,7 +117,7 @@ void require_channels(const diagnosis::Measurement& measurement,
 std::string step_for(const std::string& reason) {
   if (reason == "unit") {
     return "correct the unit: --map 'TITLE=NAME [UNIT]' for every column, with the unit that the "
-           "values have";
+           "values have; of a machine that is so heavy, --heaviest KG";
   }
   if (reason == "sign") return "correct the sign of one recording: --map 'TITLE=NAME [UNIT] * -1'";
   if (reason == "swapped") return "check which column is which: --input, --output or --map";

@@ -15,6 +15,9 @@ namespace stillhand::measurement {
 /// @returns the options that were added
 std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options);
 
+/// Adds --heaviest, for a machine in place of a hand.  @param heaviest_kg  must outlive the parsing
+void add_heaviest_option(CLI::App& verb, double& heaviest_kg);
+
 /// The columns and the rate as the command line of a further verb states them, with a blank before
 /// each; empty: nothing was stated.
 std::string words_of(const ReadOptions& options);

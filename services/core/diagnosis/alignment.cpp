@@ -199,16 +199,15 @@ Likeness likeness(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 std::string unlikely_mass(const Motion& motion) {
-  // From a finger's 10 g to twice a person on a seat.
-  constexpr double kLightest_kg = 0.01;
-  constexpr double kHeaviest_kg = 200.0;
+  constexpr double kLightest_kg = 0.01;  // a finger
   if (!why_unchecked(motion).empty() || !(motion.input_m_s2 > 0.0)) return {};
   const double mass_kg = motion.explained_n / motion.input_m_s2;
-  if (mass_kg >= kLightest_kg && mass_kg <= kHeaviest_kg) return {};
+  if (mass_kg >= kLightest_kg && mass_kg <= motion.heaviest_kg) return {};
   return digits(motion.explained_n, 3) + " N of " + motion.output + " follow " +
          digits(motion.input_m_s2, 3) + " m/s^2 of " + motion.input + ", as a body of " +
-         digits(mass_kg, 3) +
-         " kg would, and a hand's is 0.01 to 200 kg: one of the units is wrong";
+         digits(mass_kg, 3) + " kg would, and " +
+         (motion.heaviest_kg == kHeaviestHand_kg ? "a hand's is" : "what was stated is") +
+         " 0.01 to " + digits(motion.heaviest_kg, 4) + " kg: one of the units is wrong";
 }
 
 std::string why_unchecked(const Motion& motion) {

@@ -69,6 +69,9 @@ inline constexpr double kTwoSensors = 1e-6;
 std::string one_sensor_twice(const std::string& input, const std::vector<double>& x,
                              const std::string& output, const std::vector<double>& y);
 
+/// [kg] Twice a person on a seat, Eq. DG-80.
+inline constexpr double kHeaviestHand_kg = 200.0;
+
 /// What an acceleration explains of a force.
 struct Motion {
   std::string input;
@@ -77,9 +80,10 @@ struct Motion {
   std::string output;
   std::string output_unit;
   double explained_n = 0.0;  ///< [N] RMS
+  double heaviest_kg = kHeaviestHand_kg;
 };
 
-/// METHOD Eq. DG-80: why the two can't be of one hand, by the mass that their ratio is; empty: they
+/// METHOD Eq. DG-80: why the two can't be of one body, by the mass that their ratio is; empty: they
 /// can, or are not in m/s^2 and N.
 std::string unlikely_mass(const Motion& motion);
 /// "units not checked, because ..."; empty: unlikely_mass() checks these.

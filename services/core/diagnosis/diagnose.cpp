@@ -332,7 +332,8 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   fit_first_model(diagnosis, signals, blocks);
   if (!diagnosis.no_model) {
     const Model& baseline = diagnosis.baseline.model;
-    diagnosis.no_model = exchanged_of(working, signals, blocks, baseline, options.order);
+    diagnosis.no_model =
+        exchanged_of(working, signals, blocks, baseline, options.order, options.heaviest_kg);
     if (!diagnosis.no_model) {
       diagnosis.no_model = late_of(working, signals, blocks, baseline, options.order);
     }
@@ -357,8 +358,9 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
   if (!diagnosis.no_model) {
-    diagnosis.no_model = no_model_of(working, signals, blocks, diagnosis.model,
-                                     diagnosis.final_error.rmse, options.order);
+    diagnosis.no_model =
+        no_model_of(working, signals, blocks, diagnosis.model, diagnosis.final_error.rmse,
+                    options.order, options.heaviest_kg);
     if (diagnosis.no_model) drop_effects(diagnosis, signals, blocks, variance);
   }
   add_sizes(diagnosis, signals);

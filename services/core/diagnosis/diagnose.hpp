@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/carried.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
 #include "services/core/diagnosis/detection/noise_floor.hpp"
@@ -32,7 +33,8 @@ struct DiagnoseOptions {
   ModelClass model = ModelClass::kAuto;
   int order = 4;  ///< of the difference model; paper III-A
   SearchOptions search;
-  double least_force_n = kLeastForce_n;  ///< [N] a smaller effect does not count, Eq. DG-76
+  double least_force_n = kLeastForce_n;   ///< [N] a smaller effect does not count, Eq. DG-76
+  double heaviest_kg = kHeaviestHand_kg;  ///< [kg] that a force shows at most, Eq. DG-80
   ForEach for_each = in_order;
   /// Called before each longer step with its name; false ends the diagnosis (Interrupted).
   std::function<bool(const std::string&)> progress = [](const std::string&) { return true; };

@@ -224,12 +224,12 @@ Rest rest_of(const Signals& signals, const Blocks& blocks, const Model& model, d
 }
 
 // Eq. DG-80.
-std::string mass_of(const Signals& signals, const Rest& rest) {
+std::string mass_of(const Signals& signals, const Rest& rest, double heaviest_kg) {
   if (signals.inputs().size() != 1 || rest.left > 1.0) return {};
   const Signal& input = signals.inputs().front();
   const Signal& output = signals.output();
   return unlikely_mass({input.name, input.unit, input.deviation, output.name, output.unit,
-                        std::sqrt(1.0 - rest.left) * rest.still_rmse});
+                        std::sqrt(1.0 - rest.left) * rest.still_rmse, heaviest_kg});
 }
 
 // Eq. DG-85, in the longest stretch.
@@ -268,11 +268,12 @@ std::optional<NoModel> before_any_fit(const Measurement& measurement,
 }
 
 std::optional<NoModel> exchanged_of(const Measurement& measurement, const Signals& signals,
-                                    const Blocks& blocks, const Model& baseline, int order) {
+                                    const Blocks& blocks, const Model& baseline, int order,
+                                    double heaviest_kg) {
   const Rest rest = rest_of(signals, blocks, baseline, held_out(baseline, signals, blocks).rmse());
   const OtherReadings others(measurement, signals, rest.left, order);
   if (auto early = others.leads()) return early;
-  return mass_of(signals, rest).empty() ? std::nullopt : others.swapped(kBetterLead);
+  return mass_of(signals, rest, heaviest_kg).empty() ? std::nullopt : others.swapped(kBetterLead);
 }
 
 std::optional<NoModel> late_of(const Measurement& measurement, const Signals& signals,
@@ -284,12 +285,12 @@ std::optional<NoModel> late_of(const Measurement& measurement, const Signals& si
 
 std::optional<NoModel> no_model_of(const Measurement& measurement, const Signals& signals,
                                    const Blocks& blocks, const Model& model, double heldout_rmse,
-                                   int order) {
+                                   int order, double heaviest_kg) {
   const HeldOut still = without_inputs(model, signals, blocks);
   const Rest rest = rest_of(signals, blocks, model, heldout_rmse);
   const double left = rest.left;
   if (left < kClearlyLess) {
-    std::string why = mass_of(signals, rest);
+    std::string why = mass_of(signals, rest, heaviest_kg);
     if (!why.empty()) return NoModel{"unit", std::move(why)};
   }
   if (left > kMostClipped * kMostClipped) {
