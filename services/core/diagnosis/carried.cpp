@@ -88,12 +88,20 @@ Model first_fit(const Model& shared, bool fitted, const Body& baseline, PartsOut
   return plain;
 }
 
+// What leaves more says nothing of the body behind a map.
+bool explains_half(const Model& baseline, const Signals& signals) {
+  FreeRun run;
+  const double left = residual_of(baseline, signals, run).squaredNorm();
+  const double deviation = signals.output().deviation;
+  return left < 0.5 * deviation * deviation * sum_of(run.weight);
+}
+
 // From narrow to wide; none where they say nothing.
 std::vector<ResponsePrior> priors_of(const Model& shared, const Model& baseline, double noise,
                                      const std::vector<ExcitedBand>& bands,
                                      const Signals& signals) {
   std::vector<ResponsePrior> priors;
-  if (!has_body_of_baseline(shared, signals)) return priors;
+  if (!has_body_of_baseline(shared, signals) || !explains_half(baseline, signals)) return priors;
   const Body assumed = std::ranges::any_of(shared.effects, scales_body)
                            ? scaled_to(shared.body, baseline.body, bands, baseline.rate_hz)
                            : baseline.body;

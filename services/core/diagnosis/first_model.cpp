@@ -16,6 +16,9 @@ namespace {
 
 // A static model that is hardly worse is preferred to a dynamic one.
 constexpr double kStaticIsEnough = 1.02;
+// Of the output's deviation.  Where neither explains anything, what is missing may be in front of a
+// body or behind it.
+constexpr double kExplains = 0.97;
 constexpr double kSameChannel = 0.95;
 // Of the error.  A mode that its bound hides leaves most of it; less may be what an effect
 // leaves, which freer poles imitate (the shaking table of RESULTS: 0.92).
@@ -130,9 +133,9 @@ void fit_first_model(Diagnosis& diagnosis, Signals& signals, const Blocks& block
   Baseline arx = fit_baseline(signals, blocks, options.order);
   Signals allowed = signals;
   const bool slow = allow_slow_poles(arx, allowed, blocks, options.order);
-  if (!asked && !slow &&
-      held_out(diagnosis.baseline.model, signals, blocks).rmse() <=
-          kStaticIsEnough * held_out(arx.model, signals, blocks).rmse()) {
+  const double still = held_out(diagnosis.baseline.model, signals, blocks).rmse();
+  if (!asked && !slow && still < kExplains * signals.output().deviation &&
+      still <= kStaticIsEnough * held_out(arx.model, signals, blocks).rmse()) {
     return;
   }
   diagnosis.model_class = "arx";

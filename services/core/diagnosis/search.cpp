@@ -149,6 +149,9 @@ class Forward {
     if (!screened.trials.empty() && std::isfinite(screened.trials.front().rmse)) {
       fit_first(screened, signals_, settings_);
       Signals whitened = judged_by(screened.trials.front().model);
+      if (whitened.is_whitened() && result.additions.empty()) {
+        whitened = judged_by(best_of_any_shape(screened.trials.front(), current.rmse()));
+      }
       if (whitened.is_whitened()) {
         behind = refitted_behind(whitened, result);
         judged = std::move(whitened);
@@ -164,6 +167,16 @@ class Forward {
       return true;
     }
     return extended_freely(behind ? *behind : result, judged, result);
+  }
+
+  // What a kind leaves of a shape that none has would be taken for the colour of noise.
+  [[nodiscard]] Model best_of_any_shape(const Trial& named, double current_rmse) const {
+    Screened shapes =
+        screened_trials(baseline_.model, current_rmse, signals_, settings_, Shapes::kAny);
+    if (shapes.trials.empty()) return named.model;
+    fit_first(shapes, signals_, settings_);
+    const Trial& shape = shapes.trials.front();
+    return shape.rmse < (1.0 - options_.tie) * named.rmse ? shape.model : named.model;
   }
 
   [[nodiscard]] SearchResult refitted_behind(const Signals& whitened,

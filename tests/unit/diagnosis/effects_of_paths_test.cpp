@@ -12,6 +12,7 @@ namespace {
 
 using made::expect_proposed;
 using made::Planted;
+using made::Studied;
 
 constexpr std::size_t kCount = 6000;
 const std::vector<double> kU = made::ride(kCount, 1);
@@ -162,6 +163,32 @@ TEST(EffectsOfPathsTest, SlopesThatDifferWithTheSign) {
   Planted output = planted("asymmetry", "slopes at the output", y);
   output.wanted = {{0, 0.15, 0.02, 0.005}};
   expect_proposed(output);
+}
+
+// A heater: its power goes with the square of the voltage.  An input of both signs: the linear body
+// explains nothing of it.
+TEST(EffectsOfPathsTest, AnInputThatActsByItsSquare) {
+  for (const double level : {4.0, 0.0}) {
+    std::vector<double> u = kU;
+    for (double& value : u) value += level;
+    double largest = 0.0;
+    for (const double value : u) largest = std::max(largest, std::abs(value));
+    Planted sut = planted("asymmetry", "square at the input",
+                          answer(mapped(u, [](double x) { return x * x; })), u, {"u"});
+    sut.wanted = {{0, 1.0, 0.61, 0.005}, {1, largest, 1e-12, 1e-12}};
+    expect_proposed(sut);
+  }
+}
+
+// The linear body explains next to nothing of it; the offset is the sensor's.
+TEST(EffectsOfPathsTest, AnOutputThatIsASize) {
+  const double offset = 0.3 * made::rms_of(answer(kU));
+  std::vector<double> y = answer(kU);
+  for (double& value : y) value = std::abs(value + offset);
+  const Planted sut = planted("asymmetry", "size at the output", y);
+  expect_proposed(sut);
+  const Studied of(sut.measurement, 2);
+  EXPECT_GT(of.baseline.rmse, 0.9 * of.signals.output().deviation);
 }
 
 TEST(EffectsOfPathsTest, AnOutputThatHardens) {

@@ -33,6 +33,21 @@ inline std::vector<Effect> effects_before_the_body() {
       {"input_saturation", "soft", {"u"}, {{"limit", "m/s^2", 1.3, 0.02, 9.0}}, {}},
       {"dead_zone", "at the input", {"u"}, {{"half_width", "m/s^2", 0.3, 0.0, 3.0}}, {}},
       {"asymmetry", "slopes at the input", {"u"}, {{"slope_change", "-", 0.3, -0.9, 0.9}}, {}},
+      {"asymmetry",
+       "square at the input",
+       {"u"},
+       {{"square_share", "-", 0.4, -2.0, 2.0}, constant("largest_input", "m/s^2", 3.0)},
+       {}},
+      {"free_form",
+       "curve of the input",
+       {"u"},
+       {constant("knot_1", "m/s^2", -1.0),
+        constant("knot_2", "m/s^2", 0.1),
+        constant("knot_3", "m/s^2", 1.2),
+        constant("height_1", "m/s^2", -1.0),
+        constant("height_2", "m/s^2", 0.1),
+        {"height_3", "m/s^2", 0.7, -9.0, 9.0}},
+       {}},
   };
 }
 
@@ -111,6 +126,7 @@ inline std::vector<Effect> effects_behind_the_body() {
   return {
       {"nonlinear_stiffness", "at the output", {}, {{"cubic", "1/N^2", 0.05, -1.0, 1.0}}, {}},
       {"asymmetry", "slopes at the output", {}, {{"slope_change", "-", -0.3, -0.9, 0.9}}, {}},
+      {"asymmetry", "size at the output", {}, {}, {}},
       {"dead_zone", "at the output", {}, {{"half_width", "N", 0.1, 0.0, 3.0}}, {}},
       {"output_saturation", "hard", {}, {{"limit", "N", 0.3, 0.01, 9.0}}, {}},
       {"output_saturation", "soft", {}, {{"limit", "N", 0.5, 0.01, 9.0}}, {}},

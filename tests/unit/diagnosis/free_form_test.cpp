@@ -77,6 +77,27 @@ TEST(FreeFormTest, AForceOverAPosition) {
   EXPECT_LT(found.final_error.rmse, 0.8 * found.baseline_error.rmse);
 }
 
+// A valve: nothing below the level at which it opens, and more and more above it, to 1.6 of the
+// steepest straight line.  No kind has this shape.
+TEST(FreeFormTest, ACurveOfTheInput) {
+  Recorded sut;
+  const auto valve = [](double u) { return std::pow(std::max(0.0, u + 0.4), 1.6); };
+  std::vector<double> acting = sut.u;
+  for (double& u : acting) u = valve(u);
+  sut.y =
+      made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, acting);
+  const Diagnosis found = sut.diagnosed(0.05 * made::rms_of(sut.y), 1);
+  ASSERT_FALSE(found.effects.empty());
+  const Effect& effect = found.model.effects.front();
+  ASSERT_EQ(effect.kind, "free_form") << effect.form;
+  EXPECT_EQ(effect.form, "curve of the input");
+  const EffectKind& kind = effect_kind("free_form");
+  const double open = kind.mapped(effect, 1.0) - kind.mapped(effect, -0.4);
+  EXPECT_NEAR((kind.mapped(effect, -1.5) - kind.mapped(effect, -0.4)) / open, 0.0, 0.1);
+  EXPECT_NEAR((kind.mapped(effect, 2.0) - kind.mapped(effect, -0.4)) / open,
+              valve(2.0) / valve(1.0), 0.1);
+}
+
 // The hand gives way where the vibration of the last seconds is large.
 TEST(FreeFormTest, AGainThatFollowsTheVibration) {
   Recorded sut;

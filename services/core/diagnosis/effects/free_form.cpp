@@ -2,11 +2,15 @@
 #include "services/core/diagnosis/effects/free_form.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
+#include "services/core/diagnosis/effects/map_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
+#include "services/core/diagnosis/fitting/baseline.hpp"
+#include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -15,14 +19,18 @@ constexpr const char* kForce = "force over a channel";
 constexpr const char* kFactor = "factor over a channel";
 constexpr const char* kGain = "gain over a channel";
 constexpr const char* kSize = "gain over the size of an input";
+constexpr const char* kCurve = "curve of the input";
 
 // Shares of the samples below each knot: close in the middle, where there are many samples.
-constexpr double kKnotShares[] = {0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99};
+constexpr std::array kKnotShares{0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99};
+// Of a curve in front of the body, whose ends move the output for long.
+constexpr std::array kInputShares{0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
 constexpr std::size_t kFewestKnots = 3;
 constexpr double kApart = 0.02;  // knots, of the distance between the outer ones
 constexpr double kMemories_s[] = {0.5, 2.0, 8.0};
 constexpr double kLargestChange = 3.0;
 constexpr std::size_t kMostProposals = 5;
+constexpr double kRowsForANumber = 4.0;  // of a body for each hat of the input
 
 std::vector<double> named(const Effect& effect, std::string_view prefix) {
   std::vector<double> values;
@@ -88,8 +96,8 @@ std::vector<double> argument(const Effect& effect, const Signals& signals) {
   return size_of(values, memory_s, signals);
 }
 
-std::vector<double> knots_over(const std::vector<double>& values,
-                               const std::vector<double>& weight) {
+std::vector<double> knots_over(const std::vector<double>& values, const std::vector<double>& weight,
+                               const std::array<double, 7>& shares = kKnotShares) {
   std::vector<double> counted;
   for (std::size_t n = 0; n < values.size(); ++n) {
     if (weight[n] > 0.0) counted.push_back(values[n]);
@@ -99,9 +107,9 @@ std::vector<double> knots_over(const std::vector<double>& values,
   const auto at = [&](double share) {
     return counted[static_cast<std::size_t>(share * static_cast<double>(counted.size() - 1))];
   };
-  const double least = kApart * (at(kKnotShares[std::size(kKnotShares) - 1]) - at(kKnotShares[0]));
+  const double least = kApart * (at(shares.back()) - at(shares.front()));
   std::vector<double> knots;
-  for (const double share : kKnotShares) {
+  for (const double share : shares) {
     if (knots.empty() || at(share) - knots.back() > least) knots.push_back(at(share));
   }
   return knots.size() < kFewestKnots ? std::vector<double>{} : knots;
@@ -121,7 +129,50 @@ Columns hats(const std::vector<double>& over, const std::vector<double>& knots,
   return columns;
 }
 
-bool is_gain(const Effect& effect) { return effect.form != kForce && effect.form != kFactor; }
+bool is_gain(const Effect& effect) { return effect.form == kGain || effect.form == kSize; }
+
+// Of a curve of the input the numbers are the knots, then as many heights; it is asked sample by
+// sample.  Between knots a cubic whose slope at each is that of the parabola through it and its
+// neighbours; beyond the outer knots straight on.
+class SmoothCurve {
+ public:
+  explicit SmoothCurve(const Effect& effect)
+      : numbers_(effect.parameters), knots_(effect.parameters.size() / 2) {
+    if (knots_ < kFewestKnots) throw std::out_of_range("three knots or more");
+  }
+
+  [[nodiscard]] double at(double value) const {
+    std::size_t k = 1;
+    while (k + 1 < knots_ && value > x(k)) ++k;
+    const double width = x(k) - x(k - 1);
+    const double t = std::clamp((value - x(k - 1)) / width, 0.0, 1.0);
+    const double from = slope(k - 1);
+    const double to = slope(k);
+    const double bent = t * (1.0 - t) * width * ((1.0 - t) * (from - rise(k)) - t * (to - rise(k)));
+    const double beyond = value - std::clamp(value, x(0), x(knots_ - 1));
+    return (1.0 - t) * height(k - 1) + t * height(k) + bent + beyond * (t > 0.5 ? to : from);
+  }
+
+ private:
+  [[nodiscard]] double x(std::size_t k) const { return numbers_[k].value; }
+  [[nodiscard]] double height(std::size_t k) const { return numbers_[knots_ + k].value; }
+  // From the knot before it.
+  [[nodiscard]] double rise(std::size_t k) const {
+    return (height(k) - height(k - 1)) / (x(k) - x(k - 1));
+  }
+  [[nodiscard]] double slope(std::size_t k) const {
+    const std::size_t inner = std::clamp<std::size_t>(k, 1, knots_ - 2);
+    const double before = x(inner) - x(inner - 1);
+    const double behind = x(inner + 1) - x(inner);
+    const double curvature = (rise(inner + 1) - rise(inner)) / (before + behind);
+    return rise(inner) + curvature * (2.0 * x(k) - x(inner) - x(inner - 1));
+  }
+
+  const std::vector<Parameter>& numbers_;
+  std::size_t knots_;
+};
+
+double height_at(const Effect& effect, double value) { return SmoothCurve(effect).at(value); }
 
 Effect with_knots(const char* form, std::vector<std::string> channels, const std::string& unit,
                   const std::vector<double>& knots) {
@@ -141,8 +192,20 @@ std::vector<double> factors_of(const Effect& effect) {
 }
 
 // @throws std::out_of_range for what no search made
+Curve map_of(const Effect& effect) {
+  Curve curve;
+  curve.of = "part of " + effect.channels.at(0) + " that acts";
+  curve.over = effect.channels.at(0);
+  curve.over_unit = effect.parameters.at(0).unit;
+  curve.knots = knots_of(effect);
+  curve.heights = named(effect, "height_");
+  return curve;
+}
+
+// @throws std::out_of_range for what no search made
 Curve shape_of(const Effect& effect) {
   if (effect.channels.empty()) throw std::out_of_range("a channel");
+  if (effect.form == kCurve) return map_of(effect);
   Curve curve;
   curve.knots = knots_of(effect);
   curve.pure_number = is_gain(effect);
@@ -174,7 +237,11 @@ class FreeForm final : public EffectKind {
   [[nodiscard]] std::string_view name() const override { return "free_form"; }
   [[nodiscard]] bool any_shape() const override { return true; }
   [[nodiscard]] Stage stage(const Effect& effect) const override {
+    if (effect.form == kCurve) return Stage::kInputValue;
     return is_gain(effect) ? Stage::kGain : Stage::kTerm;
+  }
+  [[nodiscard]] double mapped(const Effect& effect, double value) const override {
+    return height_at(effect, value);
   }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
@@ -209,6 +276,7 @@ class FreeForm final : public EffectKind {
     const Curve shape = shape_of(at.effect());
     const auto [low, high] = std::ranges::minmax(shape.heights);
     std::string unit = shape.pure_number ? "-" : at.model.output_unit;
+    if (at.effect().form == kCurve) unit = shape.over_unit;
     if (at.effect().form == kFactor) {
       unit = unit_over(unit, at.signals.at(at.effect().channels.at(0)).unit);
     }
@@ -219,6 +287,7 @@ class FreeForm final : public EffectKind {
   [[nodiscard]] std::string evidence(const Effect& effect) const override;
   [[nodiscard]] std::optional<Curve> curve(const Effect& effect,
                                            const Signals& signals) const override {
+    if (effect.form == kCurve) return {};  // its law is the map
     Curve curve = shape_of(effect);
     if (effect.form == kFactor) curve.per = signals.at(effect.channels.at(0)).unit;
     return curve;
@@ -234,6 +303,70 @@ std::string FreeForm::evidence(const Effect& effect) const {
             with_unit(shape.knots[k], shape.over_unit);
   }
   return text;
+}
+
+// Each hat of the input through a body of its own, with common poles: the numerators are a rank of
+// one, heights times a body, in the metric of what they add to the output (Bai, Automatica 34,
+// 1998).
+std::vector<double> heights_of(const Screening& screening, const Columns& hats, int order) {
+  const Signals& signals = screening.signals();
+  Columns inputs = measured_inputs(screening);
+  inputs.erase(inputs.begin());
+  inputs.insert(inputs.begin(), hats.begin(), hats.end());
+  const Body body = started_body(inputs, signals.output().values, {}, signals, order);
+  const std::vector<double>& u = signals.inputs().front().values;
+  Eigen::MatrixXd lags(std::ssize(u), order + 1);
+  std::vector<double> x = through_poles(u, body.denominator, signals.stretches());
+  Eigen::MatrixXd numerators(std::ssize(hats), order + 1);
+  for (int i = 0; i <= order; ++i) {
+    if (i > 0) x = differenced(x, signals.stretches());
+    lags.col(i) = Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
+  }
+  for (Eigen::Index k = 0; k < numerators.rows(); ++k) {
+    const auto row = difference_basis(body.numerators[static_cast<std::size_t>(k)]);
+    numerators.row(k) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), std::ssize(row));
+  }
+  if (!lags.allFinite()) return {};
+  const Eigen::MatrixXd added = numerators * signal::upper_factor(lags).transpose();
+  // Power steps: the first direction is all that is asked.
+  Eigen::VectorXd heights = added.rowwise().norm();
+  for (int step = 0; step < 50; ++step)
+    heights = (added * (added.transpose() * heights)).normalized();
+  return {heights.begin(), heights.end()};
+}
+
+// Of the curve the offset and the gain are the body's: the centre is held at its knot, and the
+// height that is furthest from it.
+std::optional<Proposal> curve_of_input(const Screening& screening, Effect effect,
+                                       const std::vector<double>& knots) {
+  if (!screening.model().effects.empty() || screening.model().body.order() == 0) return {};
+  const auto order = static_cast<int>(screening.model().body.order());
+  const std::size_t middle = centre(knots.size());
+  const Signal& input = screening.signals().inputs().front();
+  const Columns inputs = hats(input.values, knots, nullptr, middle);
+  if (sum_of(screening.weight()) <
+      kRowsForANumber * static_cast<double>(inputs.size() + 1) * (order + 1))
+    return {};
+  std::vector<double> heights = heights_of(screening, inputs, order);
+  if (heights.empty()) return {};
+  heights.insert(heights.begin() + static_cast<std::ptrdiff_t>(middle), 0.0);
+  const auto size = [](double height) { return std::abs(height); };
+  const auto furthest =
+      static_cast<std::size_t>(std::ranges::max_element(heights, {}, size) - heights.begin());
+  const double scale = (knots[furthest] - knots[middle]) / heights[furthest];
+  const double range = knots.back() - knots.front();
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const std::string name = "height_" + std::to_string(k + 1);
+    const double height = knots[middle] + scale * heights[k];
+    const bool held = k == middle || k == furthest;
+    effect.parameters.push_back(
+        held ? constant(name, input.unit, height)
+             : Parameter{name, input.unit, height, height - 5.0 * range, height + 5.0 * range});
+  }
+  std::vector<std::vector<double>> mapped = measured_inputs(screening);
+  for (double& u : mapped.front()) u = height_at(effect, u);
+  return with_body(screening, effect,
+                   new_body(screening, mapped, screening.signals().output().values));
 }
 
 std::vector<Proposal> FreeForm::proposed(const Screening& screening) const {
@@ -263,6 +396,13 @@ std::vector<Proposal> FreeForm::proposed(const Screening& screening) const {
       propose_term(with_knots(kFactor, {rate->name, signal.name}, signal.unit, knots));
     }
     if (!signal.derived) propose_gain(with_knots(kGain, {signal.name}, signal.unit, knots));
+  }
+  const Signal& first = signals.inputs().front();
+  if (const auto knots = knots_over(first.values, screening.weight(), kInputShares);
+      !knots.empty()) {
+    auto curve =
+        curve_of_input(screening, with_knots(kCurve, {first.name}, first.unit, knots), knots);
+    if (curve) proposals.push_back(std::move(*curve));
   }
   for (const Signal& input : signals.inputs()) {
     for (const double memory_s : kMemories_s) {

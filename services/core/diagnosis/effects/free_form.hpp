@@ -10,7 +10,8 @@ namespace stillhand::diagnosis {
 ///   h(x) = sum_k c_k L_k(x),  L_k: 1 at knot k, 0 at every other knot
 ///
 /// as a force h(x) or h(x) v, or as a factor 1 + h(x) on the body's output, x a channel or the
-/// size of an input (its RMS over some seconds).  When it is tried: Eq. DG-64.
+/// size of an input (its RMS over some seconds).  Or a smooth curve m(u) in place of the first
+/// input.  When it is tried: Eq. DG-64.
 ///
 /// Source: METHOD Eq. DG-63; Hastie, Tibshirani and Friedman (2009), section 5.2 (basis of linear
 /// splines).

@@ -2,6 +2,7 @@
 #include "services/core/diagnosis/effects/map_proposals.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/fitting/baseline.hpp"
@@ -31,14 +32,8 @@ Proposal best_with_body(const Screening& screening, std::vector<Proposal> propos
     if (known.effect.form == proposals.front().effect.form) return known;
   }
   for (Proposal& each : proposals) {
-    each.body = body_for(each.effect);
-    Model model = screening.model();
-    model.body = *each.body;
-    model.effects.push_back(each.effect);
-    FreeRun run;
-    const double square = residual_of(model, screening.signals(), run).squaredNorm();
-    each.gain = 1.0 - square / screening.residual().squaredNorm();
-    if (run.finite && (!best.body || each.gain > best.gain)) best = std::move(each);
+    each = with_body(screening, each.effect, body_for(each.effect));
+    if (std::isfinite(each.gain) && (!best.body || each.gain > best.gain)) best = std::move(each);
   }
   return best;
 }
@@ -79,11 +74,24 @@ std::vector<std::vector<double>> measured_inputs(const Screening& screening) {
 }
 
 Body new_body(const Screening& screening, const std::vector<std::vector<double>>& inputs,
-              const std::vector<double>& output) {
+              const std::vector<double>& output, std::optional<int> of_order) {
   const Signals& signals = screening.signals();
-  const auto order = static_cast<int>(screening.model().body.order());
+  const int order = of_order.value_or(static_cast<int>(screening.model().body.order()));
   Body body = started_body(inputs, output, {}, signals, order);
-  return order == 4 ? with_other_mode(body, inputs, output, signals) : body;
+  if (order == 4) body = with_other_mode(body, inputs, output, signals);
+  if (is_stable(body)) return body;
+  stabilise(body);
+  return refined_body(body, inputs, output, signals);
+}
+
+Proposal with_body(const Screening& screening, const Effect& effect, Body body) {
+  Model model = screening.model();
+  model.body = body;
+  model.effects.push_back(effect);
+  FreeRun run;
+  const double square = residual_of(model, screening.signals(), run).squaredNorm();
+  const double gain = 1.0 - square / screening.residual().squaredNorm();
+  return {effect, run.finite ? gain : -HUGE_VAL, std::move(body)};
 }
 
 std::vector<Proposal> input_map_proposals(const Screening& screening, const Effect& effect,

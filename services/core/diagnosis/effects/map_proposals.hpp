@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "services/core/diagnosis/fitting/screening.hpp"
@@ -25,9 +26,12 @@ std::vector<Proposal> output_map_proposals(const Screening& screening, const Eff
 /// The inputs as measured, [inputs][samples].
 std::vector<std::vector<double>> measured_inputs(const Screening& screening);
 
-/// A body of the model's order, estimated again from the inputs and the output as an effect maps
-/// them.
+/// A body of the model's order or another, estimated again from the inputs and the output as an
+/// effect maps them.
 Body new_body(const Screening& screening, const std::vector<std::vector<double>>& inputs,
-              const std::vector<double>& output);
+              const std::vector<double>& output, std::optional<int> of_order = {});
+
+/// The effect next to this body, and what its free run explains.
+Proposal with_body(const Screening& screening, const Effect& effect, Body body);
 
 }  // namespace stillhand::diagnosis
