@@ -66,10 +66,15 @@ bool is_within_bounds_of(const Body& bound, Body body) {
 // A body that rings or holds a level for long, where the bound of its poles holds back the one that
 // was fitted, Eq. DG-66.  True where it is kept.
 bool allow_slow_poles(Baseline& baseline, Signals& signals, const Blocks& blocks, int order) {
-  const Body& body = baseline.model.body;
-  if (body.order() == 0 || !is_near_bound(body)) return false;
-  const Signals slow = signals.with_slow_poles();
+  if (baseline.model.body.order() == 0 || !is_near_bound(baseline.model.body)) return false;
   double quick = judged_from_start(baseline.model, signals, blocks, order).rmse;
+  // One that runs away on a part when it is fitted to the others says nothing of the order.
+  for (auto p = static_cast<int>(baseline.model.body.order()); p > 1 && !std::isfinite(quick);) {
+    baseline = fit_baseline(signals, blocks, --p);
+    quick = judged_from_start(baseline.model, signals, blocks, order).rmse;
+  }
+  const Body body = baseline.model.body;
+  const Signals slow = signals.with_slow_poles();
   std::vector<Baseline> fitted;
   std::vector<Trial> tried;
   for (int p = order; p > 0; --p) {
