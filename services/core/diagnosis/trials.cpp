@@ -57,14 +57,38 @@ bool same_shape(const Model& a, const Model& b) {
          a.effects.back().form == b.effects.back().form;
 }
 
+// The first effect may have hidden poles of a body whose order was reduced, or stand between two
+// bodies whose poles are more than one has: one pole more, and another, while that explains more of
+// what is screened.
+void lift_on_part(Trial& best, const Part& part, const Signals& signals,
+                  const RoundSettings& settings) {
+  constexpr double kWorthPoles = 0.99;  // of the held-out error
+  constexpr int kMorePoles = 2;         // than the body was asked for: those of a second one
+  const int iterations = settings.options.fit_iterations;
+  if (passes_through_body(best.model)) return;
+  Trial richest =
+      part.is_whole ? best : judged_trial(best.model, part.signals, part.blocks, 1, false);
+  const std::size_t own = best.model.body.order();
+  while (static_cast<int>(richest.model.body.order()) < settings.order + kMorePoles) {
+    Trial richer =
+        judged_trial(lifted(richest.model), part.signals, part.blocks, iterations, part.is_whole);
+    if (!(richer.rmse < kWorthPoles * richest.rmse)) break;
+    richest = std::move(richer);
+  }
+  if (richest.model.body.order() == own) return;
+  if (!part.is_whole) {
+    richest = judged_trial(std::move(richest.model), signals, settings.blocks, iterations, true);
+    if (!(richest.rmse < kWorthPoles * best.rmse)) return;
+  }
+  best = std::move(richest);
+}
+
 // Nonlinearities inside the body differ in their shape alone, and their fits often end in a local
 // minimum.  Each is tried again from the linear parts of the best of them, and from those of
-// another that this has made the best.  The first may have hidden poles of a body whose order was
-// reduced.
+// another that this has made the best.
 void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals& signals,
                      const RoundSettings& settings) {
-  constexpr double kWorthPoles = 0.99;  // of the held-out error
-  constexpr double kGains = 0.97;       // of the present one
+  constexpr double kGains = 0.97;  // of the present error
   constexpr int kPasses = 2;
   const SearchOptions& options = settings.options;
   const Part part(signals, settings);
@@ -72,13 +96,7 @@ void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals
   for (int pass = 0; pass < kPasses; ++pass) {
     const auto best = std::ranges::find_if(all, inside);
     if (best == all.end() || best->rmse > kGains * current_rmse) return;
-    while (!passes_through_body(best->model) &&
-           static_cast<int>(best->model.body.order()) < settings.order) {
-      Trial richer =
-          judged_trial(lifted(best->model), signals, settings.blocks, options.fit_iterations, true);
-      if (!(richer.rmse < kWorthPoles * best->rmse)) break;
-      *best = std::move(richer);
-    }
+    lift_on_part(*best, part, signals, settings);
     const Model from = best->model;
     const double best_rmse =
         part.is_whole ? best->rmse : judged_trial(from, part.signals, part.blocks, 1, false).rmse;
