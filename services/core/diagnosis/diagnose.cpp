@@ -275,6 +275,12 @@ double response_gain(const FreeRun& run, const Signals& whitened) {
   return before > 0.0 ? response.norm() / before : 1.0;
 }
 
+// Of the last round.
+std::size_t last_candidates(const SearchResult& search) {
+  if (!search.last_tried.empty() || search.additions.empty()) return search.last_tried.size();
+  return search.additions.back().tried.size();
+}
+
 double limit_of(const Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks) {
   FreeRun run;
   Eigen::VectorXd residual = residual_of(diagnosis.model, signals, run);
@@ -289,7 +295,7 @@ double limit_of(const Diagnosis& diagnosis, const Signals& signals, const Blocks
              {.rmse = diagnosis.final_error.rmse,
               .independent = sum_of(run.weight) / correlation_samples(residual, signals.rate_hz()),
               .blocks = blocks.count,
-              .candidates = diagnosis.search.last_tried.size()},
+              .candidates = last_candidates(diagnosis.search)},
              diagnosis.options.search) /
          gain;
 }

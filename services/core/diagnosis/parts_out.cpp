@@ -12,6 +12,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/seen_range.hpp"
 #include "services/core/diagnosis/trials.hpp"
+#include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -20,6 +21,7 @@ constexpr std::size_t kThirds = 3;  // of a single recording
 constexpr double kHelps = 0.01;     // of an error, as SearchOptions::least_fall
 constexpr int kIterations = 30;
 constexpr double kLeastNoise = 1e-9;     // of the output
+constexpr std::size_t kPieces = 10;      // of a long record, to which a fit goes
 constexpr double kClearlyLower = 0.999;  // of the error of a fit that did not stop short
 
 // Each part is whole: thirds of a recording, or the recordings that were joined.
@@ -71,6 +73,17 @@ GivenRows first_rows(const Signals& signals, std::size_t given) {
   return rows;
 }
 
+// The rows that a fit without one part goes to: of a long record pieces of the other parts, as many
+// as a round screens.  Nothing of the part is among them.
+std::vector<Stretch> rest_of(const Signals& apart, const Blocks& parts, std::size_t part) {
+  std::vector<Stretch> others = apart.stretches();
+  std::erase_if(others, [&](const Stretch& each) {
+    return parts.fold_of(each.first / parts.length) == part;
+  });
+  const std::size_t scale = parts.folds * kPieces / (parts.folds - 1);
+  return spread_pieces(others, scale, kMostScreened / kPieces * scale, apart.rate_hz());
+}
+
 // The numbers of its effects are as many as the body's order says.
 bool is_bound_to_order(const Model& model) {
   return passes_through_body(model) || std::ranges::any_of(model.effects, [](const Effect& effect) {
@@ -103,7 +116,14 @@ PartsOut::PartsOut(const Model& found, const Signals& signals, const Blocks& blo
       apart_(signals.restarted(borders_of(parts_)).whitened(whitening_taps(noise, signals))),
       with_pasts_(apart_.with_pasts()),
       heads_(apart_.cut_to(heads_of(apart_, given))),
-      given_(first_rows(heads_, given)) {}
+      given_(first_rows(heads_, given)) {
+  // A slow body's level lasts through a piece.
+  if (signals.size() <= kMostScreened || signals.slow_poles() || several()) return;
+  const Signals cut = signals.restarted(borders_of(parts_));
+  for (std::size_t part = 0; part < parts_.folds; ++part) {
+    rests_.push_back(cut.cut_to(rest_of(cut, parts_, part)));
+  }
+}
 
 OutOfParts PartsOut::left_by(const Model& model) const {
   const auto size = std::ssize(signals_.weight());
@@ -206,13 +226,16 @@ Model PartsOut::refitted(Model model, const Body& other) const {
   Model again = model;
   start_afresh(again, signals_, static_cast<int>(other.order()));
   if (again.body.denominator != model.body.denominator) starts.push_back(std::move(again));
+  const Signals some = screened_part(signals_);
+  const bool all = some.size() == signals_.size();
   double least = std::numeric_limits<double>::infinity();
   for (Model& start : starts) {
-    const FitResult result = fit(start, signals_, blocks_, options);
+    const FitResult result = fit(start, some, all ? blocks_ : make_blocks(some), options);
     if (!result.finite || !(result.rmse < least)) continue;
     least = result.rmse;
     model = start;
   }
+  if (!all) fit(model, signals_, blocks_, options);
   return model;
 }
 
@@ -245,13 +268,15 @@ PartsOut::Fitted PartsOut::fitted_without(std::size_t part, const Model& model) 
   FitOptions options;
   options.max_iterations = kIterations;
   options.prior = prior_of(model);
-  options.without_fold = static_cast<int>(part);
+  if (rests_.empty()) options.without_fold = static_cast<int>(part);
+  const Signals& rest = rests_.empty() ? signals_ : rests_[part];
+  const Blocks blocks = rests_.empty() ? parts_ : make_blocks(rest);
   Model bare = bare_of_terms(model);
   const bool has_terms = packed(bare) != packed(model);
   Fitted best{model, 0.0};
-  best.rmse = fit(best.model, signals_, parts_, options).rmse;
+  best.rmse = fit(best.model, rest, blocks, options).rmse;
   if (has_terms) {
-    const double from_nothing = fit(bare, signals_, parts_, options).rmse;
+    const double from_nothing = fit(bare, rest, blocks, options).rmse;
     if (!(best.rmse < kClearlyLower * from_nothing)) best = {std::move(bare), from_nothing};
   }
   note_seen(best.model, without_part(part));

@@ -85,8 +85,9 @@ class PartsOut {
   const Blocks parts_;
   const Signals apart_;  ///< every part starts as a recording does
   const Signals with_pasts_;
-  const Signals heads_;    ///< of every part, as much as a start state depends on
-  const GivenRows given_;  ///< rows of the heads, from which it comes
+  const Signals heads_;         ///< of every part, as much as a start state depends on
+  const GivenRows given_;       ///< rows of the heads, from which it comes
+  std::vector<Signals> rests_;  ///< [parts] of a long record, pieces of the others; else empty
 };
 
 }  // namespace stillhand::diagnosis

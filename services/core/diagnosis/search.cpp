@@ -132,6 +132,8 @@ class Forward {
       if (!extended(result, judged)) return;
       if (retest(result, judged, blocks_, options_)) ++result.removed;
       if (result.removed > options_.most_effects) return;  // it goes in circles
+      // A round that may add nothing would only say what else there is.
+      if (result.additions.size() == options_.most_effects) return;
     }
   }
 

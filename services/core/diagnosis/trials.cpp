@@ -186,6 +186,18 @@ std::size_t near_the_best(const std::vector<Trial>& all, double current_rmse) {
   return near;
 }
 
+// Of those that were fitted to the end on pieces: the best, and what may tie with it (twice
+// SearchOptions::tie) and gains as much as a first effect must.
+std::size_t worth_all_samples(const std::vector<Trial>& all, double current_rmse,
+                              const SearchOptions& options) {
+  std::size_t near = 1;
+  while (near < all.size() && all[near].rmse < (1.0 + 2.0 * options.tie) * all.front().rmse &&
+         all[near].rmse < (1.0 - options.first_least_fall) * current_rmse) {
+    ++near;
+  }
+  return std::min(near, all.size());
+}
+
 // The first of them fitted to the end and judged by the linearisation alone.
 void fit_on_part(Screened& screened, std::size_t count, const Part& part,
                  const RoundSettings& settings) {
@@ -258,7 +270,7 @@ std::vector<Trial> finished_trials(Screened screened, double current_rmse, const
   auto& all = screened.trials;
   if (const Part part(signals, settings); !part.is_whole) {
     fit_on_part(screened, screened.near, part, settings);
-    screened.near = near_the_best(all, screened.current_rmse);
+    screened.near = worth_all_samples(all, screened.current_rmse, settings.options);
     std::for_each(all.begin() + static_cast<std::ptrdiff_t>(screened.near), all.end(),
                   [](Trial& trial) { trial = not_fitted(std::move(trial.model)); });
   } else if (!screened.first_fitted) {
