@@ -6,7 +6,8 @@ One call a set, without a setting: `stillhand diagnose TRAIN --save MODEL`, then
 --start-from-output N`, N the samples that the benchmark gives away. The score is the free-run RMS error of the test
 file behind these samples, in its own unit: of the linear model, and of the model with the effects that are carried. Two
 peers are fitted here by least squares, each with its size chosen on the last quarter of the training file: a long
-impulse response (FIR, ridge), and a polynomial difference model (NARX) that predicts from its own output.
+impulse response (FIR, ridge), and a polynomial difference model (NARX) that predicts from its own output. Where there
+is no linear model, the mean of the training file's output takes its place.
 
 The files are not part of the project: `<set>_train.csv` and `<set>_test.csv` in --folder or in its benchmarks/.
 
@@ -178,14 +179,20 @@ class Score:
         ask = ["diagnose", train, "--input", bench.input, "--output", bench.output]
         stillhand(*ask, "--save", scratch / "model.json", "--json", scratch / "verdict.json")
         self.seconds = time.monotonic() - began
-        stillhand(*ask, "--most-effects", 0, "--save", scratch / "linear.json")
         self.effects = named(*(json.loads((scratch / name).read_text()) for name in ("verdict.json", "model.json")))
-        asked = ["--start-from-output", bench.given]
-        self.linear = self.error("linear.json", bench, test, scratch, asked)
-        self.carried = self.error("model.json", bench, test, scratch, [*asked, *picture])
-        rested = [self.error(model, bench, test, scratch, []) for model in ("model.json", "linear.json")]
-        self.harm = max(self.carried / self.linear, rested[0] / rested[1])
         columns = [columns_of(path, [bench.input, bench.output]) for path in (train, test)]
+        asked = ["--start-from-output", bench.given]
+        self.carried = self.error("model.json", bench, test, scratch, [*asked, *picture])
+        try:
+            stillhand(*ask, "--most-effects", 0, "--save", scratch / "linear.json")
+            self.linear_model = ""
+            self.linear = self.error("linear.json", bench, test, scratch, asked)
+            rested = [self.error(model, bench, test, scratch, []) for model in ("model.json", "linear.json")]
+            self.harm = max(self.carried / self.linear, rested[0] / rested[1])
+        except Failed:
+            self.linear_model = " (none: a constant)"
+            self.linear = bench.raw * rms(columns[1][1][bench.given:] - columns[0][1].mean())
+            self.harm = self.carried / self.linear
         self.fir, self.narx = (bench.raw * peer_error(kind, *columns, bench.given) for kind in (ImpulseResponse, Narx))
 
     @staticmethod
@@ -221,7 +228,7 @@ def main():
             except Failed as why:
                 print(f"| {name}: {bench.known} | {str(why).partition(' (')[0]} | {bench.published} {bench.unit} | | | |")
                 continue
-        print(f"| {name}: {bench.known} | {score.effects} | {bench.published} {bench.unit} | {score.linear:.3g}, "
+        print(f"| {name}: {bench.known} | {score.effects} | {bench.published} {bench.unit} | {score.linear:.3g}{score.linear_model}, "
               f"{score.carried:.3g} | {score.fir:.3g}, {score.narx:.3g} | {score.seconds:.1f} |", flush=True)
         if score.harm > NO_HARM:
             wrong.append(f"{name}: the effects harm on the test file")

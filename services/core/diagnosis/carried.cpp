@@ -198,7 +198,9 @@ void keep_shares(CarriedModel& carried, const Model& baseline, const PartsOut& p
     const auto least = std::ranges::min_element(earned.rbegin(), earned.rend(), {}, &Earned::share);
     if (least->share > 0.0 && of_all > 0.0) {
       for (std::size_t e = 0; e < count; ++e) {
-        carried.model.effects[e].share = std::min(earned[e].share, of_all);
+        // One without numbers has no size that could be smaller.
+        Effect& effect = carried.model.effects[e];
+        effect.share = complexity(effect) == 0 ? 1.0 : std::min(earned[e].share, of_all);
       }
       return;
     }

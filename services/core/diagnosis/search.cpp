@@ -50,21 +50,32 @@ std::optional<std::size_t> confirmed(std::vector<Trial>& tried, const HeldOut& c
   return std::nullopt;
 }
 
-// Drops effects that the later ones have made idle.  True when one left.
+// Drops effects that the later ones have made idle.  True when one left.  Of a long record one that
+// is needed on the pieces stays without a fit to all samples.
 bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
             const SearchOptions& options) {
   if (result.model.effects.size() < 2) return false;
+  const Signals part = screened_part(signals);
+  const Blocks part_blocks = make_blocks(part);
+  const bool is_whole = part.size() == signals.size();
+  const HeldOut with_on_part = is_whole ? HeldOut() : held_out(result.model, part, part_blocks);
   const HeldOut with = held_out(result.model, signals, blocks);
+  const auto needed = [&](const HeldOut& without, const HeldOut& whole) {
+    return !without.finite || worth_it(compared(without, whole), options, options.least_fall, 1);
+  };
   for (std::size_t e = 0; e + 1 < result.model.effects.size(); ++e) {
     const Effect& effect = result.model.effects[e];
     if (effect_kind(effect.kind).stage(effect) == Stage::kWeight) continue;
     Model without = result.model;
     without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(e));
+    if (!is_whole &&
+        needed(judged_trial(without, part, part_blocks, options.fit_iterations, true).held_out,
+               with_on_part)) {
+      continue;
+    }
     const Trial trial =
         judged_trial(std::move(without), signals, blocks, options.fit_iterations, true);
-    if (!trial.held_out.finite ||
-        worth_it(compared(trial.held_out, with), options, options.least_fall, 1))
-      continue;
+    if (needed(trial.held_out, with)) continue;
     result.model = trial.model;
     result.additions.erase(result.additions.begin() + static_cast<std::ptrdiff_t>(e));
     return true;

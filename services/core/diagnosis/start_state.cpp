@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/model_run.hpp"
 
 namespace stillhand::diagnosis {
@@ -145,45 +147,122 @@ MatrixXd spread_of(const Model& model, const Signals& signals) {
   return spread;
 }
 
-MatrixXd most_likely_start(const Model& model, const Signals& signals, const MatrixXd& spread,
-                           const std::vector<double>& measured, const GivenRows& rows, double noise,
-                           const Answer& answer) {
+namespace {
+
+// Gauss and Newton's steps.
+class StartSteps {
+ public:
+  StartSteps(const Model& model, const Signals& signals, const MatrixXd& spread,
+             const std::vector<double>& measured, const GivenRows& rows, double noise,
+             const Answer& answer)
+      : model_(model),
+        signals_(signals),
+        root_(root_of(spread)),
+        measured_(measured),
+        rows_(rows),
+        noise_(noise),
+        answer_(answer) {}
+
+  [[nodiscard]] const MatrixXd& root() const { return root_; }
+  [[nodiscard]] MatrixXd from(MatrixXd states) const;
+  // [stretches] how unlikely, of the samples and the state: - 2 ln of both, up to a constant.
+  [[nodiscard]] VectorXd unlikely(const MatrixXd& states) const {
+    const std::vector<double> predicted = answer_(started(model_, signals_, states));
+    VectorXd all(std::ssize(rows_));
+    for (std::size_t s = 0; s < rows_.size(); ++s) {
+      const auto column = static_cast<Index>(s);
+      all[column] = square_at({rows_[s]}, measured_, predicted) / (noise_ * noise_) +
+                    in_spreads(states.col(column)).squaredNorm();
+    }
+    return all;
+  }
+
+ private:
+  [[nodiscard]] VectorXd in_spreads(const VectorXd& state) const {
+    return root_.completeOrthogonalDecomposition().solve(state);
+  }
+
+  const Model& model_;
+  const Signals& signals_;
+  const MatrixXd root_;
+  const std::vector<double>& measured_;
+  const GivenRows& rows_;
+  const double noise_;
+  const Answer& answer_;
+};
+
+MatrixXd StartSteps::from(MatrixXd states) const {
   constexpr int kMostSteps = 5;
   constexpr double kStep = 1e-3;  // of a number's spread, for the derivative
-  const Index size = spread.rows();
-  MatrixXd states = MatrixXd::Zero(size, std::ssize(rows));
-  if (size == 0) return states;
-  const MatrixXd root = root_of(spread);
-  std::vector<double> predicted = answer(started(model, signals, states));
+  const Index size = root_.rows();
+  std::vector<double> predicted = answer_(started(model_, signals_, states));
   for (int step = 0; step < kMostSteps; ++step) {
     std::vector<std::vector<double>> moved;
     for (Index j = 0; j < size; ++j) {
       MatrixXd other = states;
-      other.colwise() += kStep * root.col(j);
-      moved.push_back(answer(started(model, signals, other)));
+      other.colwise() += kStep * root_.col(j);
+      moved.push_back(answer_(started(model_, signals_, other)));
     }
     MatrixXd next = states;
-    for (std::size_t s = 0; s < rows.size(); ++s) {
-      const auto count = static_cast<Index>(rows[s].size());
+    for (std::size_t s = 0; s < rows_.size(); ++s) {
+      const auto count = static_cast<Index>(rows_[s].size());
       if (count == 0) continue;
       const auto column = static_cast<Index>(s);
       MatrixXd slope(count, size);
       VectorXd residual(count);
       for (Index i = 0; i < count; ++i) {
-        const std::size_t n = rows[s][static_cast<std::size_t>(i)];
-        residual[i] = measured[n] - predicted[n];
+        const std::size_t n = rows_[s][static_cast<std::size_t>(i)];
+        residual[i] = measured_[n] - predicted[n];
         for (Index j = 0; j < size; ++j) {
           slope(i, j) = (moved[static_cast<std::size_t>(j)][n] - predicted[n]) / kStep;
         }
       }
       // About no state: the spread is that of the whole state, not of what it changes.
-      const VectorXd present = root.completeOrthogonalDecomposition().solve(states.col(column));
-      next.col(column) = root * most_likely(slope, residual + slope * present, noise);
+      const VectorXd present = in_spreads(states.col(column));
+      next.col(column) = root_ * most_likely(slope, residual + slope * present, noise_);
     }
-    std::vector<double> answered = answer(started(model, signals, next));
-    if (!(square_at(rows, measured, answered) < square_at(rows, measured, predicted))) break;
+    std::vector<double> answered = answer_(started(model_, signals_, next));
+    if (!(square_at(rows_, measured_, answered) < square_at(rows_, measured_, predicted))) break;
     states = std::move(next);
     predicted = std::move(answered);
+  }
+  return states;
+}
+
+// The measured output does not tell the sign of what is in front of its map.
+bool loses_sign(const Model& model) {
+  return std::ranges::any_of(model.effects, [](const Effect& effect) {
+    const EffectKind& kind = effect_kind(effect.kind);
+    return kind.stage(effect) == Stage::kOutputValue &&
+           kind.slope(effect, 1.0) * kind.slope(effect, -1.0) < 0.0;
+  });
+}
+
+}  // namespace
+
+MatrixXd most_likely_start(const Model& model, const Signals& signals, const MatrixXd& spread,
+                           const std::vector<double>& measured, const GivenRows& rows, double noise,
+                           const Answer& answer) {
+  constexpr int kTurns = 16;
+  const Index size = spread.rows();
+  MatrixXd states = MatrixXd::Zero(size, std::ssize(rows));
+  if (size == 0) return states;
+  const StartSteps steps(model, signals, spread, measured, rows, noise, answer);
+  states = steps.from(states);
+  if (!loses_sign(model)) return states;
+  VectorXd least = steps.unlikely(states);
+  // Around the ellipse of the two largest directions.
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const double angle = 2.0 * std::numbers::pi * turn / kTurns;
+    VectorXd begin = std::cos(angle) * steps.root().col(size - 1);
+    if (size > 1) begin += std::sin(angle) * steps.root().col(size - 2);
+    const MatrixXd other = steps.from(begin.replicate(1, std::ssize(rows)));
+    const VectorXd unlikely = steps.unlikely(other);
+    for (Index s = 0; s < least.size(); ++s) {
+      if (!(unlikely[s] < least[s])) continue;
+      least[s] = unlikely[s];
+      states.col(s) = other.col(s);
+    }
   }
   return states;
 }

@@ -62,16 +62,21 @@ bool same_shape(const Model& a, const Model& b) {
 // what is screened.
 void lift_on_part(Trial& best, const Part& part, const Signals& signals,
                   const RoundSettings& settings) {
-  constexpr double kWorthPoles = 0.99;  // of the held-out error
-  constexpr int kMorePoles = 2;         // than the body was asked for: those of a second one
+  constexpr double kWorthPoles = 0.99;       // of the held-out error
+  constexpr int kMorePoles = 2;              // than the body was asked for: those of a second one
+  constexpr double kRowsForANumber = 100.0;  // as of a noise model, Eq. DG-61
+  const double rows = sum_of(part.signals.weight());
   const int iterations = settings.options.fit_iterations;
   if (passes_through_body(best.model)) return;
   Trial richest =
       part.is_whole ? best : judged_trial(best.model, part.signals, part.blocks, 1, false);
   const std::size_t own = best.model.body.order();
   while (static_cast<int>(richest.model.body.order()) < settings.order + kMorePoles) {
+    Model more = lifted(richest.model);
+    const bool is_asked_for = static_cast<int>(more.body.order()) <= settings.order;
+    if (!is_asked_for && rows < kRowsForANumber * static_cast<double>(complexity(more))) break;
     Trial richer =
-        judged_trial(lifted(richest.model), part.signals, part.blocks, iterations, part.is_whole);
+        judged_trial(std::move(more), part.signals, part.blocks, iterations, part.is_whole);
     if (!(richer.rmse < kWorthPoles * richest.rmse)) break;
     richest = std::move(richer);
   }

@@ -33,13 +33,13 @@ class NonlinearStiffness final : public EffectKind {
   // y + kappa y^3 while it rises, then level.
   [[nodiscard]] double mapped(const Effect& effect, double y) const override {
     const double kappa = effect.value(0);
-    const double end = turning_point(kappa);
-    const double inside = std::clamp(y, -end, end);
-    return inside + kappa * cube(inside);
+    if (rises(kappa, y)) return y + kappa * cube(y);
+    const double end = std::copysign(1.0 / std::sqrt(-3.0 * kappa), y);
+    return end + kappa * cube(end);
   }
   [[nodiscard]] double slope(const Effect& effect, double y) const override {
     const double kappa = effect.value(0);
-    return std::abs(y) < turning_point(kappa) ? 1.0 + 3.0 * kappa * y * y : 0.0;
+    return rises(kappa, y) ? 1.0 + 3.0 * kappa * y * y : 0.0;
   }
   [[nodiscard]] Nonlinearity feedback(const Effect& effect) const override {
     if (effect.form.starts_with("cubic")) return {cubic, threshold_of(effect)};
@@ -73,9 +73,7 @@ class NonlinearStiffness final : public EffectKind {
   }
 
  private:
-  static double turning_point(double kappa) {
-    return kappa < 0.0 ? 1.0 / std::sqrt(-3.0 * kappa) : HUGE_VAL;
-  }
+  static bool rises(double kappa, double y) { return 3.0 * kappa * y * y > -1.0; }
 };
 
 // d phi / d z
