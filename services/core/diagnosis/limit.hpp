@@ -21,7 +21,7 @@ struct Limit {
 /// Pure.  Of up to 5000 rows, evenly spread.  @param y, p  one length, at least 40
 Limit limit_of(const std::vector<double>& y, const std::vector<double>& p);
 
-/// METHOD Eq. DG-85: the output shows that the input went on where its sensor stays at a limit,
+/// METHOD Eq. DG-87: the output shows that the input went on where its sensor stays at a limit,
 /// also with noise on top; empty: it does not.  Pure.
 /// @param x, y  of input and output, without a gap
 std::string limit_in_words(const std::string& input, const std::vector<double>& x,

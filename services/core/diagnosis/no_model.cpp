@@ -232,7 +232,7 @@ std::string mass_of(const Signals& signals, const Rest& rest, double heaviest_kg
                         std::sqrt(1.0 - rest.left) * rest.still_rmse, heaviest_kg});
 }
 
-// Eq. DG-85, in the longest stretch.
+// Eq. DG-87, in the longest stretch.
 std::string limit_of_input(const Signals& signals) {
   if (signals.inputs().size() != 1) return {};
   const auto length = [](const Stretch& each) { return each.end - each.first; };
