@@ -346,8 +346,8 @@ spoilt("A2", "a third of the acceleration's gain in the first half", Unusable("t
        acc=lambda x: numpy.r_[x[:3000] / 3.0, x[3000:]])
 spoilt("A2", "an offset of the acceleration that steps in", Unusable("the mean of a_y"),
        acc=lambda x: x + (TIME >= 30.0))
-spoilt("A2", "the force with the other sign", Assumed("not the sign of a_y", -1.0), force=lambda x: -x)
-spoilt("A2", "the acceleration with the other sign", Assumed("not the sign of a_y", -1.0), acc=lambda x: -x)
+spoilt("A2", "the force with the other sign", Assumed("the sign opposite to a_y", -1.0), force=lambda x: -x)
+spoilt("A2", "the acceleration with the other sign", Assumed("the sign opposite to a_y", -1.0), acc=lambda x: -x)
 spoilt("A2", "acceleration in g as m/s^2", Assumed("units as the columns state", 9.80665), acc=lambda x: x / 9.80665)
 
 # A3. Samples
