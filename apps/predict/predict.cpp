@@ -70,8 +70,14 @@ void add_ranges(const std::vector<diagnosis::LeftRange>& left, Prediction& predi
     // What acts inside a body has a scale of its own.
     if (!unit.empty()) note += digits_of(range.low) + " to " + digits_of(range.high) + unit + ", ";
     note += "in " + digits_of(100.0 * each.share) + " % of the samples; ";
-    note += each.effect.empty() ? "the linear part continues"
-                                : "far outside of it the effect keeps its value";
+    if (each.effect.empty()) {
+      note += "the linear part continues";
+    } else if (unit.empty()) {
+      note += "far outside of it the effect keeps its value";
+    } else {
+      note += "the effect keeps its value below " + digits_of(range.lower_edge());
+      note += " and above " + digits_of(range.upper_edge()) + unit;
+    }
     prediction.notes.push_back(std::move(note));
   }
 }
