@@ -35,7 +35,7 @@ inline constexpr std::array<ForceCause, 5> kForceCauses{{
     {"model", "the model predicts another force", &ForceBudget::model},
     {"lateness", "samples and answers were late, or lost", &ForceBudget::lateness},
     {"limits", "limits of force and slew, ramps and fades", &ForceBudget::limits},
-    {"involuntary", "no linear filter of the motion explains it: the body's own force",
+    {"involuntary", "the body's own force, not a linear response to the motion",
      &ForceBudget::involuntary},
     {"sensor", "noise and steps of the accelerometer", &ForceBudget::sensor},
 }};

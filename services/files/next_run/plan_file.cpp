@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/core/contract/config_error.hpp"
 #include "services/files/diagnosis/model_file.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/files/settings/json_entry.hpp"
@@ -39,6 +40,9 @@ nlohmann::ordered_json json_of(const Candidate& candidate) {
 PlanFile read_plan(const std::filesystem::path& path) {
   const std::string origin = path.string();
   const auto json = settings::parsed_json(recording::read_file(origin), origin, kWanted);
+  if (!json.contains("candidates") || !json.contains("seconds")) {
+    throw ConfigError(origin, "a file without candidates", kWanted);
+  }
   const settings::JsonEntry top(json, origin);
   PlanFile plan;
   plan.seconds = top.at("seconds").number();

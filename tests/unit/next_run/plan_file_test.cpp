@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/files/next_run/plan_file.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
 
 namespace stillhand::next_run {
@@ -46,6 +48,14 @@ TEST_F(PlanFileTest, AnEffectThatTheModelLacksIsRefused) {
 TEST_F(PlanFileTest, ModelsOfOtherInputsAreRefused) {
   json_["candidates"][1]["model"]["inputs"] = {"v"};
   EXPECT_THROW(read(), ConfigError);
+}
+
+TEST_F(PlanFileTest, AnotherFileIsNoPlan) {
+  json_.erase("candidates");
+  EXPECT_THAT(support::refusal([&] { read(); }),
+              testing::HasSubstr("want a plan, as `stillhand plan-run` writes it"));
+  json_ = nlohmann::ordered_json::array();
+  EXPECT_THAT(support::refusal([&] { read(); }), testing::HasSubstr("want a plan"));
 }
 
 TEST_F(PlanFileTest, OneCandidateIsNoTie) {
