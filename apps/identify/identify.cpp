@@ -68,7 +68,7 @@ void divide(std::vector<double>& values, double scale) {
 
 identification::Record record_of(const Measurement& measurement, const Channel& input,
                                  const Channel& output, const Stretch& stretch) {
-  if (measurement.rate_hz < identification::kRecordingRateHz * (1.0 - 1e-6)) {
+  if (measurement.rate_hz < identification::kLeastRecordingRateHz) {
     throw ConfigError(measurement.source, fmt::format("{:.6g} Hz", measurement.rate_hz),
                       "100 Hz or more, the paper's recording rate");
   }

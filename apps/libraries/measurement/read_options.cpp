@@ -79,7 +79,12 @@ void add_heaviest_option(CLI::App& verb, double& heaviest_kg) {
   verb.add_option("--heaviest", heaviest_kg,
                   "mass [kg] that a force in N may show over an acceleration in m/s^2: more is "
                   "taken for a wrong unit. State it for a machine, such as a shaking table")
-      ->check(CLI::PositiveNumber)
+      ->check([](const std::string& word) {
+        double kg = 0.0;
+        return CLI::detail::lexical_cast(word, kg) && kg >= 0.01 && kg <= 1e7
+                   ? std::string()
+                   : word + ", want 0.01 to 1e7 kg";
+      })
       ->capture_default_str()
       ->group(kGroup);
 }

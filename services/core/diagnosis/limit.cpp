@@ -75,6 +75,14 @@ std::vector<double> means_of(const std::vector<double>& x, std::size_t rows) {
   return out;
 }
 
+// More rows at an end of the range than a limit behind noise leaves there: a binary signal, or a
+// plain limit, which the screening names.
+bool has_levels(const std::vector<double>& x) {
+  const auto [low, high] = std::ranges::minmax_element(x);
+  const auto at_ends = std::ranges::count(x, *low) + std::ranges::count(x, *high);
+  return static_cast<double>(at_ends) > 0.5 * kMostClipped * static_cast<double>(x.size());
+}
+
 }  // namespace
 
 Limit limit_of(const std::vector<double>& y, const std::vector<double>& p) {
@@ -134,12 +142,15 @@ std::string limit_in_words(const std::string& input, const std::vector<double>& 
   constexpr std::size_t kLeastRows = 500;  // ten for each of the filter's
   const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(rate_hz / kRate_hz + 1e-6));
   const std::vector<double> seen = means_of(x, rows);
-  if (seen.size() < kLeastRows) return {};
+  if (seen.size() < kLeastRows || has_levels(x)) return {};
   const double step_hz = rate_hz / static_cast<double>(rows);
   const std::vector<double> shown =
       shown_by(seen, means_of(y, rows), static_cast<std::size_t>(kReach_s * step_hz));
   if (likeness(seen, shown).share < 0.5) return {};
   const Limit limit = limit_of(seen, shown);
+  // An input of few levels stays at each of them, and a limit that holds it longer leaves nothing.
+  constexpr double kMostShare = 0.75;
+  if (limit.share > kMostShare) return {};
   // The rows just beyond a limit are not counted: of 6 % in all 4 %.
   if (limit.share <= 0.5 * kMostClipped || !(limit.error_ratio < kBetter)) return {};
   return output + " shows that " + input + " went on where it stays at a limit, in " +

@@ -74,7 +74,7 @@ std::vector<double> at_fit_rate(const std::vector<double>& samples, double rate_
 
 Record preprocessed(const Record& recorded) {
   check(recorded);
-  if (recorded.rate_hz < kRecordingRateHz * (1.0 - kRateTolerance)) {
+  if (recorded.rate_hz < kLeastRecordingRateHz) {
     throw ConfigError("recording, sample rate [Hz]", std::to_string(recorded.rate_hz),
                       "100 Hz or more, the paper's recording rate");
   }

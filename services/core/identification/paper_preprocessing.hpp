@@ -7,6 +7,8 @@ namespace stillhand::identification {
 
 /// Rate of a recording in the paper [Hz], and of its fit; III-A.
 inline constexpr double kRecordingRateHz = 100.0;
+/// A clock may be a thousandth slow: its recording counts as one of 100 Hz.
+inline constexpr double kLeastRecordingRateHz = 0.999 * kRecordingRateHz;
 inline constexpr double kFitRateHz = 50.0;
 
 /// Paper III-A, METHOD Eq. ID-5: to 100 Hz, fifth-order Butterworth low-pass at 10 Hz, every second

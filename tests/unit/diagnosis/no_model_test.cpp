@@ -4,8 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/diagnosis/limit.hpp"
 #include "services/core/diagnosis/share_words.hpp"
 #include "tests/support/spoiled_recordings.hpp"
 
@@ -46,6 +50,20 @@ TEST(NoModelTest, UnrelatedChannelsClocksAndUnitsAreNamed) {
     EXPECT_EQ(sut.no_model->reason, reason) << name << ": " << sut.no_model->why;
     EXPECT_TRUE(sut.effects.empty()) << name;
   }
+}
+
+// The classic test signal stays at its two levels by design.
+TEST(NoModelTest, ABinaryInputIsNoSensorAtItsLimit) {
+  std::vector<double> input, output;
+  std::uint32_t shift = 1;
+  double lagged = 0.0;
+  for (int n = 0; n < 6000; ++n) {
+    if (n % 10 == 0) shift = shift >> 1 ^ (-(shift & 1) & 0xB400u);
+    input.push_back((shift & 1) != 0 ? 1.0 : -1.0);
+    lagged += 0.1 * (input.back() - lagged);
+    output.push_back(lagged);
+  }
+  EXPECT_EQ(limit_in_words("a_y", input, "f", output, 100.0), "");
 }
 
 Measurement renamed(Measurement measurement) {

@@ -209,6 +209,13 @@ TEST(IdentifyTest, ASlowRecordingIsRefused) {
               HasSubstr("pegged.csv: got 60 Hz, want 100 Hz or more"));
 }
 
+TEST(IdentifyTest, AClockThatIsAThousandthSlowIsTaken) {
+  const auto noise = support::white_noise(3000, 1.0, 4);
+  const auto other = support::white_noise(3000, 1.0, 5);
+  EXPECT_EQ(identify(measured(99.95, noise, other), {}).rate_hz, 99.95);
+  EXPECT_THAT(error_of(measured(99.8, noise, other)), HasSubstr("want 100 Hz or more"));
+}
+
 TEST(IdentifyTest, LessThanASecondIsRefused) {
   const auto noise = support::white_noise(900, 1.0, 4);
   EXPECT_THAT(error_of(measured(1000.0, noise, noise)), HasSubstr("900 samples"));
