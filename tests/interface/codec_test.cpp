@@ -13,7 +13,6 @@
 
 #include "services/messages/display/codec.hpp"
 #include "services/messages/human_operator/codec.hpp"
-#include "services/messages/identification/codec.hpp"
 #include "services/messages/motion/codec.hpp"
 #include "services/messages/rig/codec.hpp"
 #include "services/messages/sensing/codec.hpp"
@@ -216,86 +215,6 @@ TEST(CancellationCodecTest, EveryFieldOfASensedSampleReachesTheCore) {
   EXPECT_EQ(std::tuple(enabled, permitted), std::tuple(true, false));
 }
 
-// A path that the model does not have, or no path at all: check_model() refuses it.
-TEST(CancellationCodecTest, AnElementWithMemoryWithoutAPlaceIsRefused) {
-  using namespace cancellation;
-  ControlModel model;
-  model.rate_hz = 1000.0;
-  model.denominator = {1.0, 0.0};
-  model.inputs = {{Channel::kAccelY, {}, {1.0, 0.0}}};
-  model.paths = {{Channel::kRoll, 0.0, {}, 1.0}};
-  model.hysteresis = {{0, signal::HysteresisOperator::kStop, 1.0, -1.0, 1.0}};
-  const auto refusal = [&](std::int32_t path) {
-    auto message = to_idl(model, 1003);
-    message.hysteresis()[0].path(path);
-    return check_model(from_idl(message), {60.0, 25.0}).refusal;
-  };
-  EXPECT_EQ(refusal(0), Refusal::kNone);
-  for (const std::int32_t path : {-1, -2, 1, 7}) EXPECT_EQ(refusal(path), Refusal::kMalformed);
-}
-
-TEST(CancellationCodecTest, AControlModelComesBackAsItWasSent) {
-  using namespace cancellation;
-  ControlModel model;
-  model.rate_hz = 1000.0;
-  model.denominator = {1.0, 0.5};
-  model.inputs = {{Channel::kAccelY, {-1.0, 2.0, {3.0, 4.0}}, {5.0, 6.0}},
-                  {Channel::kAccelX, {}, {7.0, 8.0}}};
-  model.loop = LoopPath{{1.0, 2.0}, {3.0, 4.0}, {0.0, 5.0}, {-6.0, 7.0, {8.0, 9.0}}, 33};
-  model.output = {-10.0, 11.0, {12.0, 13.0, 14.0}};
-  model.paths = {{Channel::kOmega, 0.15, {-1.0, 1.0, {-2.0, 2.0}}, 0.16}};
-  model.waves = {{std::nullopt, 17.0, 18.0, 19.0}, {Channel::kTheta, 20.0, 21.0, 22.0}};
-  model.adapts = HandCompliance{23.0, 24.0, 25.0, 26.0};
-  model.hysteresis = {{0, signal::HysteresisOperator::kDahl, 27.0, -28.0, 29.0},
-                      {std::nullopt, signal::HysteresisOperator::kStop, 30.0, -31.0, 32.0}};
-  const auto message = to_idl(model, 1003);
-  EXPECT_EQ(message.model(), 1003);
-  const ControlModel back = from_idl(message);
-  const auto same_map = [](const ValueMap& a, const ValueMap& b) {
-    return a.low == b.low && a.high == b.high && a.values == b.values;
-  };
-  EXPECT_EQ(back.rate_hz, 1000.0);
-  EXPECT_EQ(back.denominator, model.denominator);
-  ASSERT_EQ(back.inputs.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(back.inputs[i].channel, model.inputs[i].channel);
-    EXPECT_TRUE(same_map(back.inputs[i].map, model.inputs[i].map));
-    EXPECT_EQ(back.inputs[i].numerator, model.inputs[i].numerator);
-  }
-  ASSERT_TRUE(back.loop);
-  EXPECT_EQ(back.loop->e, model.loop->e);
-  EXPECT_EQ(back.loop->n, model.loop->n);
-  EXPECT_EQ(back.loop->m, model.loop->m);
-  EXPECT_TRUE(same_map(back.loop->phi, model.loop->phi));
-  EXPECT_EQ(back.loop->ticks, 33);
-  EXPECT_TRUE(same_map(back.output, model.output));
-  ASSERT_EQ(back.hysteresis.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto& [path, operation, threshold, low, high] = back.hysteresis[i];
-    EXPECT_EQ(path, model.hysteresis[i].path);
-    EXPECT_EQ(operation, model.hysteresis[i].operation);
-    EXPECT_EQ(std::tuple(threshold, low, high),
-              std::tuple(model.hysteresis[i].threshold, model.hysteresis[i].low,
-                         model.hysteresis[i].high));
-  }
-  ASSERT_EQ(back.paths.size(), 1u);
-  EXPECT_EQ(back.paths[0].channel, Channel::kOmega);
-  EXPECT_EQ(back.paths[0].lag_s, 0.15);
-  EXPECT_TRUE(same_map(back.paths[0].map, model.paths[0].map));
-  EXPECT_EQ(back.paths[0].gain, 0.16);
-  ASSERT_EQ(back.waves.size(), 2u);
-  EXPECT_FALSE(back.waves[0].channel);
-  EXPECT_EQ(back.waves[1].channel, Channel::kTheta);
-  EXPECT_EQ(back.waves[1].frequency, 20.0);
-  EXPECT_EQ(back.waves[1].sine_n, 21.0);
-  EXPECT_EQ(back.waves[1].cosine_n, 22.0);
-  ASSERT_TRUE(back.adapts);
-  EXPECT_EQ(back.adapts->mass_kg, 23.0);
-  EXPECT_EQ(back.adapts->lever_m, 26.0);
-  model.adapts.reset();
-  EXPECT_FALSE(from_idl(to_idl(model, 1)).adapts);
-}
-
 TEST(CancellationCodecTest, EveryFieldOfAMotorCommandIsSet) {
   const auto command = [](bool enabled, bool permitted) {
     const auto input = cancellation::from_idl(sensed_message(), enabled, permitted);
@@ -395,60 +314,6 @@ TEST(HumanOperatorCodecTest, EveryFieldOfAForceIsSet) {
                     {"active", "true"},
                     {"trial", "4"},
                     {"flags", "2"}}));
-}
-
-identification::FeedthroughModel identified() {
-  identification::FeedthroughModel model;
-  model.fit = {50.0, {0.5, 1.5}, {1.0, 2.5}};
-  model.control = {1000.0, {3.5, 4.5, 5.5}, {1.0, 6.5, 7.5}};
-  model.heldout.free_run_vaf_percent = 8.5;
-  model.heldout.free_run_rms_n = 9.5;
-  model.conversion_error = 10.5;
-  return model;
-}
-
-TEST(IdentificationCodecTest, EveryFieldOfAModelIsSet) {
-  EXPECT_EQ(fields_of(identification::to_idl(identified(), 11, 12)),
-            (Fields{{"rig", "0"},
-                    {"stamp_ns", "0"},
-                    {"model", "11"},
-                    {"from_tick", "0"},
-                    {"trial", "12"},
-                    {"fit_rate_hz", "50"},
-                    {"fit_numerator", "[0.5, 1.5]"},
-                    {"fit_denominator", "[1, 2.5]"},
-                    {"control_rate_hz", "1000"},
-                    {"control_numerator", "[3.5, 4.5, 5.5]"},
-                    {"control_denominator", "[1, 6.5, 7.5]"},
-                    {"heldout_vaf_percent", "8.5"},
-                    {"heldout_rmse_n", "9.5"},
-                    {"conversion_error", "10.5"},
-                    {"usable", "true"},
-                    {"text", ""},
-                    {"to_position", "false"}}));
-}
-
-TEST(IdentificationCodecTest, AModelComesBackFromTheBusAsItWent) {
-  const auto message = identification::to_idl(identified(), 11, 12);
-  EXPECT_EQ(fields_of(identification::to_idl(identification::from_idl(message), 11, 12)),
-            fields_of(message));
-}
-
-TEST(IdentificationCodecTest, TheCancellerGetsTheControlRateFilter) {
-  const auto [rate_hz, numerator, denominator] =
-      cancellation::from_idl(identification::to_idl(identified(), 11, 12));
-  EXPECT_EQ(std::tuple(rate_hz, numerator, denominator),
-            std::tuple(1000.0, identified().control.numerator, identified().control.denominator));
-}
-
-TEST(IdentificationCodecTest, AFailureSaysWhyWithinTheRoomOfTheIdl) {
-  const identification::Identification failed{std::nullopt, std::string(500, 'x')};
-  const auto fields = fields_of(identification::to_idl(failed, 11, 12));
-  const auto has = [&fields](const char* name, const std::string& value) {
-    return std::find(fields.begin(), fields.end(), Fields::value_type{name, value}) != fields.end();
-  };
-  EXPECT_TRUE(has("model", "11") && has("trial", "12") && has("usable", "false"));
-  EXPECT_TRUE(has("text", std::string(199, 'x'))) << "string<200> with its end";
 }
 
 }  // namespace
