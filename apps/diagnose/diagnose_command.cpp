@@ -57,19 +57,6 @@ void check_different(const std::vector<std::string>& recordings) {
   }
 }
 
-std::vector<diagnosis::Measurement> read_all(const Arguments& arguments) {
-  std::vector<diagnosis::Measurement> parts;
-  measurement::ReadOptions read = arguments.read;
-  read.channels = {arguments.options.inputs, arguments.options.output};
-  std::vector<std::string> names = arguments.options.inputs;
-  names.push_back(arguments.options.output);
-  for (const std::string& path : arguments.recordings) {
-    parts.push_back(measurement::read_measurement(path, read));
-    measurement::require_channels(parts.back(), names, read);
-  }
-  return parts;
-}
-
 // The last recording is the run of the plan.
 std::optional<BrokenTie> tie_of(const Arguments& arguments,
                                 std::vector<diagnosis::Measurement> parts) {
@@ -108,7 +95,8 @@ int run(const Arguments& arguments) {
   const runtime::EndAfterStop end(stop, [&] {
     if (folder) folder->clear_away();
   });
-  std::vector<diagnosis::Measurement> parts = read_all(arguments);
+  std::vector<diagnosis::Measurement> parts =
+      read_recordings(arguments.recordings, arguments.read, arguments.options);
   const std::optional<BrokenTie> tie = tie_of(arguments, parts);
   const diagnosis::Measurement measurement = measurement::join(std::move(parts));
   report::ProgressLine progress;
@@ -150,7 +138,7 @@ int run(const Arguments& arguments) {
   const bool tied =
       std::ranges::any_of(result.effects, [](const auto& effect) { return !effect.ties.empty(); });
   if (tied && arguments.plan.empty()) {
-    report::say_next("stillhand plan-run finds the motion that tells the tied causes apart");
+    report::say_next("stillhand plan-run finds the motion that settles the tie");
   }
   report::say_next(arguments.save.empty()
                        ? "--save MODEL keeps the model, for `stillhand predict`"
@@ -169,30 +157,16 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       "Finds what the model lacks. Fits a linear model to the recording, takes the residual of "
       "its\nfree run (its prediction from the inputs alone) on samples that the fit has not seen, "
       "traces\nit to an effect, adds the effect, and prints the error before and after. The kinds "
-      "of "
-      "effect:\nservices/core/diagnosis/README.md.\nREC: the MCAP file of a session, or a CSV, "
-      "MATLAB, HDF5, ROS 2 (MCAP) or "
-      "sound file with\ncolumns 'name [unit]' and 't [s]'. For other columns, use --map. Several "
+      "of effect:\nservices/core/diagnosis/README.md.\nREC: the MCAP file of a session, or a CSV, "
+      "MATLAB, HDF5, ROS 2 (MCAP) or sound file with\ncolumns 'name [unit]' and 't [s]'. For other "
+      "columns, use --map. Several "
       "recordings of one rig\nare diagnosed together.\nExample: stillhand diagnose ride.csv "
       "--input a_y --output f --json out.json --report DIR");
-  verb->add_option("REC", arguments->recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")
-      ->required();
-  verb->add_option("--input", arguments->options.inputs,
-                   "inputs of the model: channel(s), comma-separated")
-      ->delimiter(',')
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1)
-      ->capture_default_str();
-  verb->add_option("--output", arguments->options.output, "channel that the model predicts")
-      ->capture_default_str();
-  add_diagnose_options(*verb, arguments->options);
+  add_recordings(*verb, arguments->recordings, arguments->read, arguments->options);
   verb->add_option("--stability", arguments->stability,
                    "repeat the diagnosis this many times, a fifth of the recording left out at "
                    "random, and count the verdicts [0: no repetition]")
       ->check(CLI::Range(0, 1000));
-  verb->add_option("--trial", arguments->read.trial,
-                   "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(*verb, arguments->read);
   verb->add_option("--plan", arguments->plan,
                    "plan.json of `stillhand plan-run`: the last REC is its run, and the verb says "
                    "which of the tied causes is left")

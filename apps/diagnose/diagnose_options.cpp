@@ -8,6 +8,36 @@
 
 namespace stillhand::diagnose {
 
+void add_recordings(CLI::App& verb, std::vector<std::string>& recordings,
+                    measurement::ReadOptions& read, diagnosis::DiagnoseOptions& options) {
+  verb.add_option("REC", recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")->required();
+  verb.add_option("--input", options.inputs, "inputs of the model: channel(s), comma-separated")
+      ->delimiter(',')
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1)
+      ->capture_default_str();
+  verb.add_option("--output", options.output, "channel that the model predicts")
+      ->capture_default_str();
+  add_diagnose_options(verb, options);
+  verb.add_option("--trial", read.trial,
+                  "trial of a session's recording: its number, or the letter of its condition");
+  measurement::add_read_options(verb, read);
+}
+
+std::vector<diagnosis::Measurement> read_recordings(const std::vector<std::string>& recordings,
+                                                    measurement::ReadOptions read,
+                                                    const diagnosis::DiagnoseOptions& options) {
+  read.channels = {options.inputs, options.output};
+  std::vector<std::string> names = options.inputs;
+  names.push_back(options.output);
+  std::vector<diagnosis::Measurement> parts;
+  for (const std::string& path : recordings) {
+    parts.push_back(measurement::read_measurement(path, read));
+    measurement::require_channels(parts.back(), names, read);
+  }
+  return parts;
+}
+
 void add_diagnose_options(CLI::App& verb, diagnosis::DiagnoseOptions& options) {
   constexpr double kMostForce_n = 100.0;  // larger than any force of a stick
   verb.add_option_function<std::string>(

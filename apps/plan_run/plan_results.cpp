@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <unsupported/Eigen/FFT>
 
 #include "services/core/recording/csv.hpp"
+#include "services/core/signal/spectrum.hpp"
 #include "services/files/next_run/plan_file.hpp"
 
 namespace stillhand::plan_run {
@@ -67,24 +67,14 @@ ordered_json limits_json(const Planned& planned) {
           {"band_hz", {ride.band_low_hz, ride.band_high_hz}}};
 }
 
-// Amplitudes of the run's lines, a tenth of a hertz together.
 report::Series spectrum_of(const std::vector<double>& values, double rate_hz) {
-  constexpr double kBin_hz = 0.1;
-  constexpr double kHighest_hz = 10.0;
-  Eigen::FFT<double> transform;
-  std::vector<std::complex<double>> lines;
-  transform.fwd(lines, values);
-  const auto size = static_cast<double>(values.size());
-  std::vector<double> squares(static_cast<std::size_t>(kHighest_hz / kBin_hz), 0.0);
-  for (std::size_t k = 1; k < lines.size() / 2; ++k) {
-    const auto bin = static_cast<std::size_t>(static_cast<double>(k) * rate_hz / size / kBin_hz);
-    if (bin < squares.size()) squares[bin] += 2.0 * std::norm(lines[k]) / (size * size);
-  }
+  constexpr double kSegment_s = 5.0;
+  const auto segment = 2 * static_cast<std::size_t>(0.5 * kSegment_s * rate_hz);
+  const auto spectra =
+      signal::cross_spectra(values, values, rate_hz, std::min(segment, values.size() / 2 * 2));
   report::Series series;
-  for (std::size_t b = 0; b < squares.size(); ++b) {
-    series.x.push_back((static_cast<double>(b) + 0.5) * kBin_hz);
-    series.y.push_back(std::sqrt(squares[b]));
-  }
+  series.x = spectra.frequency_hz;
+  series.y = spectra.s_xx;
   return series;
 }
 
@@ -159,6 +149,7 @@ std::string ride_csv(const next_run::Ride& ride) {
 
 report::Figure plan_figure(const Planned& planned) {
   constexpr int kSteps = 8;  // as the plan was judged
+  constexpr double kHighest_hz = 10.0;
   constexpr std::array kColours{report::Colour::kAccent, report::Colour::kWarning,
                                 report::Colour::kConditionC, report::Colour::kConditionB};
   const diagnosis::Measurement& run = planned.plan.run;
@@ -174,15 +165,15 @@ report::Figure plan_figure(const Planned& planned) {
                               .x = time_s,
                               .y = motion});
   report::Panel motion_spectrum{.title = "its spectrum",
-                                .x = {.label = "frequency [Hz]"},
-                                .y = {.label = "RMS in 0.1 Hz [m/s²]"}};
+                                .x = {.label = "frequency [Hz]", .low = 0.0, .high = kHighest_hz},
+                                .y = {.label = "PSD [m²/s⁴/Hz]"}};
   motion_spectrum.series.push_back(spectrum_of(motion, run.rate_hz));
   report::Panel apart{.title = "what each leaves of the prediction of " + name_at(planned, 0),
                       .x = {.label = "time [s]"},
                       .y = {.label = model.output + unit}};
   report::Panel apart_spectrum{.title = "spectrum of what is left",
-                               .x = {.label = "frequency [Hz]"},
-                               .y = {.label = "RMS in 0.1 Hz" + unit},
+                               .x = {.label = "frequency [Hz]", .low = 0.0, .high = kHighest_hz},
+                               .y = {.label = "PSD [" + model.output_unit + "²/Hz]"},
                                .legend = report::Legend::kNone};
   for (std::size_t i = 1; i < count_of(planned); ++i) {
     const report::Colour colour = kColours[(i - 1) % kColours.size()];

@@ -42,19 +42,6 @@ struct Arguments {
   std::filesystem::path config = runtime::shipped("deploy/config");
 };
 
-diagnosis::Measurement read_all(const Arguments& arguments) {
-  measurement::ReadOptions read = arguments.read;
-  read.channels = {arguments.options.inputs, arguments.options.output};
-  std::vector<std::string> names = arguments.options.inputs;
-  names.push_back(arguments.options.output);
-  std::vector<diagnosis::Measurement> parts;
-  for (const std::string& path : arguments.recordings) {
-    parts.push_back(measurement::read_measurement(path, read));
-    measurement::require_channels(parts.back(), names, read);
-  }
-  return measurement::join(std::move(parts));
-}
-
 // What the lab asks of the platform in the pegged trial of a plan.
 next_run::Bounds bounds_of(const Arguments& arguments) {
   session::ProtocolOptions protocol;
@@ -109,7 +96,8 @@ int run(const Arguments& arguments) {
   report::StagedFolder folder(arguments.out);
   const runtime::EndAfterStop end(stop, [&] { folder.clear_away(); });
   const next_run::Bounds bounds = bounds_of(arguments);
-  const diagnosis::Measurement measured = read_all(arguments);
+  const diagnosis::Measurement measured = measurement::join(
+      diagnose::read_recordings(arguments.recordings, arguments.read, arguments.options));
   report::ProgressLine progress;
   diagnosis::DiagnoseOptions options = arguments.options;
   options.for_each = runtime::on_all_cores;
@@ -146,35 +134,22 @@ void add_plan_run_command(CLI::App& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = cli.add_subcommand(
       "plan-run",
-      "Plans the run that tells tied causes apart. Diagnoses the recording, takes the causes that "
+      "Plans the run that settles a tie. Diagnoses the recording, takes the causes that "
       "explain\nit about equally well, and looks for the motion, within the platform's limits, on "
       "which their\npredictions differ most for the noise of the recording. It states the "
       "probability that the run\nbreaks the tie.\nREC: as for `stillhand diagnose`.\nExample: "
       "stillhand plan-run run1/session.mcap --seconds 30 --out next");
-  verb->add_option("REC", arguments->recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")
-      ->required();
+  diagnose::add_recordings(*verb, arguments->recordings, arguments->read, arguments->options);
   verb->add_option("--seconds", arguments->seconds, "length of the run [s]")
       ->check(CLI::Range(5.0, 600.0))
       ->capture_default_str();
   verb->add_option("--out", arguments->out, "folder for ride.csv, plan.json and plan.svg")
       ->required()
       ->check(settings::check_name);
-  verb->add_option("--input", arguments->options.inputs,
-                   "inputs of the model: channel(s), comma-separated; the platform moves the first")
-      ->delimiter(',')
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1)
-      ->capture_default_str();
-  verb->add_option("--output", arguments->options.output, "channel that the model predicts")
-      ->capture_default_str();
   verb->add_option("--config", arguments->config,
                    "folder with the settings of each service; motion.yaml holds the platform's "
                    "limits")
       ->capture_default_str();
-  diagnose::add_diagnose_options(*verb, arguments->options);
-  verb->add_option("--trial", arguments->read.trial,
-                   "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(*verb, arguments->read);
   verb->callback([arguments, &status] { status = run(*arguments); });
 }
 

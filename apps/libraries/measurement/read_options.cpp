@@ -13,6 +13,7 @@
 #include "apps/libraries/report/command_line.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/files/settings/check_number.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -79,12 +80,7 @@ void add_heaviest_option(CLI::App& verb, double& heaviest_kg) {
   verb.add_option("--heaviest", heaviest_kg,
                   "mass [kg] that a force in N may show over an acceleration in m/s^2: more is "
                   "taken for a wrong unit. State it for a machine, such as a shaking table")
-      ->check([](const std::string& word) {
-        double kg = 0.0;
-        return CLI::detail::lexical_cast(word, kg) && kg >= 0.01 && kg <= 1e7
-                   ? std::string()
-                   : word + ", want 0.01 to 1e7 kg";
-      })
+      ->check(settings::number_between(0.01, 1e7))
       ->capture_default_str()
       ->group(kGroup);
 }
