@@ -31,7 +31,7 @@ const std::vector<Door>& overview() {
       {"A recording of yours: CSV, MATLAB, HDF5, ROS 2, sound",
        {{"identify", "fit the paper's model, and see how well it predicts"},
         {"diagnose", "find what the model lacks, with the error before and after"},
-        {"plan-run", "plan the run that tells two causes apart"},
+        {"plan-run", "plan the run that settles a tie of causes"},
         {"predict", "put that model to the test on another recording"}}},
       {"A laboratory: stick, motor, platform, or their simulation",
        {{"lab", "run a whole session: identify, run the conditions, compute the results"},

@@ -26,7 +26,7 @@ inline constexpr std::size_t kMostCandidates = 5;
 std::vector<Candidate> tied_candidates(const diagnosis::Diagnosis& diagnosis,
                                        const diagnosis::Signals& signals);
 
-/// What else than the platform's motion tells two candidates apart, Eq. NR-8, a sentence each;
+/// What else than the platform's motion separates two candidates, Eq. NR-8, a sentence each;
 /// empty: they read the same channels.
 std::vector<std::string> other_ways(const Candidate& one, const Candidate& other,
                                     const diagnosis::Signals& signals);
