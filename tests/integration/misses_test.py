@@ -11,7 +11,7 @@ import signal
 import time
 
 import lab_process
-from lab_process import TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
+from lab_process import TRIAL_LIMIT_S, LabTestCase, campaign, hold, quick_session
 
 # Half a tick (Eq. MI-1), and the time from the signal until each thread stands, which grows with the machine's load.
 TOLERANCE_S = 0.01
@@ -27,7 +27,7 @@ class MissesTest(LabTestCase):
         pid = lab.pid_of(service)
         os.kill(pid, signal.SIGSTOP)
         from_ns = time.monotonic_ns()
-        time.sleep(length_s)
+        hold(length_s)
         until_ns = time.monotonic_ns()
         os.kill(pid, signal.SIGCONT)
         lab.end_status(TRIAL_LIMIT_S)
