@@ -213,7 +213,14 @@ void Bus::start() {
 }
 
 void Bus::stop_receiving() {
-  for (const auto& endpoint : impl_->endpoints) endpoint->close_reader(*impl_->subscriber);
+  // The sources' callback takes from the other readers: it ends first.
+  for (const bool sources : {true, false}) {
+    for (const auto& endpoint : impl_->endpoints) {
+      if ((&endpoint->topic() == &topics::kSessionSources) == sources) {
+        endpoint->close_reader(*impl_->subscriber);
+      }
+    }
+  }
 }
 
 std::set<std::string> Bus::matched_peers(const topics::Topic& topic) const {
@@ -265,7 +272,9 @@ bool Bus::speaks_for(std::string_view service, const ParticipantId& from) const 
   return !Impl::one_source(options_) || impl_->sources.speaks_for(service, from);
 }
 bool Bus::take_sources(const ParticipantId& from, const std::vector<Source>& sources) {
-  return impl_->peers.take_sources(from, sources);
+  if (!impl_->peers.take_sources(from, sources)) return false;
+  for (const auto& endpoint : impl_->endpoints) endpoint->take_waiting();
+  return true;
 }
 
 std::vector<std::string> Bus::duplicate_peers() const { return impl_->peers.duplicates(); }

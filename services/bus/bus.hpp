@@ -201,8 +201,9 @@ class Bus {
   /// Every process of this rig that is on the bus, this one included; one that is there twice is
   /// there twice.
   [[nodiscard]] std::vector<Source> sources_found() const;
-  /// The participant `from`, an experiment, names the sources of its session.  @returns false when
-  /// they are not accepted (Sources::take()).
+  /// The participant `from`, an experiment, names the sources of its session.  States that were
+  /// written before are delivered now.  @returns false when they are not accepted
+  /// (Sources::take()).
   bool take_sources(const ParticipantId& from, const std::vector<Source>& sources);
   /// True when every other service of the catalogue has a live status writer and no replay is on
   /// the domain; with Options::one_source, the sources are named, and nobody else writes for them.

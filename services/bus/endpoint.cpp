@@ -140,9 +140,24 @@ void ReaderEndpoint::close_reader(edds::Subscriber& owner) {
   reader = nullptr;
 }
 
-void ReaderEndpoint::on_data_available(edds::DataReader* source) {
+void ReaderEndpoint::on_data_available(edds::DataReader* /*source*/) {
+  may_wait() ? take_waiting() : take_all();
+}
+
+// Called by the thread that receives the topic, and by the one that receives the sources.  No lock:
+// each may hold Fast DDS's own.  Who comes second leaves its samples to the first.
+void ReaderEndpoint::take_waiting() {
+  if (!may_wait() || takers_.fetch_add(1) > 0) return;
+  int seen = 0;
+  do {
+    seen = takers_.load();
+    if (!sources->awaits(source_)) take_all();  // else they stay in the reader's history
+  } while (takers_.fetch_sub(seen) != seen);
+}
+
+void ReaderEndpoint::take_all() {
   edds::SampleInfo info;
-  while (ok(source->take_next_sample(sample_.get(), &info))) {
+  while (ok(reader->take_next_sample(sample_.get(), &info))) {
     if (!info.valid_data || peers_.refuses(info.publication_handle)) continue;
     Arrival arrival{monotonic_ns(), info.source_timestamp.to_ns(), system_ns(),
                     static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long())};

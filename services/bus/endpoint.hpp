@@ -38,6 +38,8 @@ class Endpoint {
   [[nodiscard]] virtual bool enable() = 0;
   /// Deletes a reader, once its running callback has returned; nothing for a writer.
   virtual void close_reader(edds::Subscriber& /*owner*/) {}
+  /// Delivers what waited for the session's sources; nothing for a writer.
+  virtual void take_waiting() {}
   /// By how much the writer's monotonic clock is ahead of this process's [ns].
   virtual void set_clock_ahead(std::int64_t /*ahead_ns*/) noexcept {}
   virtual EndpointReport report() = 0;
@@ -104,6 +106,7 @@ class ReaderEndpoint final : public Endpoint, public edds::DataReaderListener {
 
   bool enable() override { return ok(reader->enable()); }
   void close_reader(edds::Subscriber& owner) override;
+  void take_waiting() override;
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return false; }
   void set_clock_ahead(std::int64_t ahead_ns) noexcept override {
@@ -116,6 +119,7 @@ class ReaderEndpoint final : public Endpoint, public edds::DataReaderListener {
 
  private:
   void on_data_available(edds::DataReader*) override;
+  void take_all();
   void on_subscription_matched(edds::DataReader*,
                                const edds::SubscriptionMatchedStatus& status) override;
   void on_requested_deadline_missed(edds::DataReader*,
@@ -127,7 +131,13 @@ class ReaderEndpoint final : public Endpoint, public edds::DataReaderListener {
   void supervise(Tick tick, std::int64_t sent_ns, std::int64_t arrived_ns);
   [[nodiscard]] bool has_living_writer() const noexcept;
 
-  const std::size_t source_;  // place of the topic's only writer, or Sources::kAnybody
+  /// The topic is written once, by one process: a sample may wait until that process is named.
+  [[nodiscard]] bool may_wait() const noexcept {
+    return sources != nullptr && topic_.pattern == topics::Pattern::kStateLatched;
+  }
+
+  const std::size_t source_;    // place of the topic's only writer, or Sources::kAnybody
+  std::atomic<int> takers_{0};  // where samples may wait
   std::shared_ptr<void> sample_;
   Deliver deliver_;
   std::optional<SampleWriters> writer_of_;  // receiving thread only

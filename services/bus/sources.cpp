@@ -146,6 +146,10 @@ bool Sources::admits(std::size_t service, const Handle& writer) const noexcept {
   return is(named, static_cast<const ertps::octet*>(writer.value));
 }
 
+bool Sources::awaits(std::size_t service) const noexcept {
+  return service < sources_.size() && topics::kServices[service] != "experiment" && !named();
+}
+
 bool Sources::speaks_for(std::string_view service,
                          const ParticipantId& participant) const noexcept {
   const std::size_t place = place_of(service);

@@ -68,6 +68,8 @@ class Sources {
   /// The writer belongs to the participant that is named for a process.  Before the sources are
   /// named: it writes for the experiment.
   [[nodiscard]] bool admits(std::size_t service, const Handle& writer) const noexcept;
+  /// Nobody can say yet whether a writer writes for the process.
+  [[nodiscard]] bool awaits(std::size_t service) const noexcept;
   /// The participant is the one that is named for the process.  Before that: anybody, for a process
   /// that starts says so.
   [[nodiscard]] bool speaks_for(std::string_view service,

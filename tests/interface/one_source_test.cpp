@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "idl/control_loop.h"
+#include "idl/model.h"
 #include "idl/session.h"
 #include "places.hpp"
 #include "services/bus/bus.hpp"
@@ -189,6 +190,65 @@ TEST_F(OneSourceTest, AProcessListensToTheExperimentThatStartedItAlone) {
   name_sources(canceller);
   ASSERT_TRUE(eventually([&] { return rig.named == -1; }));
   EXPECT_STREQ(rig.bus.why_not_alive(), "the session has not named its sources");
+}
+
+/// Writes a model of rig 1, then an event, which needs no name.
+struct Modeller {
+  explicit Modeller(std::string name) : service(std::move(name)), bus(options_of(service)) {
+    models = bus.publisher<stillhand_msgs::FeedthroughModel>(topics::kFeedthroughModel);
+    events = bus.publisher<stillhand_msgs::Event>(topics::kEvent);
+    bus.start();
+  }
+  void write(std::int32_t number) {
+    stillhand_msgs::FeedthroughModel model;
+    model.model(number);
+    models.write(model);
+    stillhand_msgs::Event event;
+    event.source(service);
+    events.write(event);
+  }
+  std::string service;
+  Bus bus;
+  Publisher<stillhand_msgs::FeedthroughModel> models;
+  Publisher<stillhand_msgs::Event> events;
+};
+
+// A model is written once.  A process that starts late may receive it before the sources.
+TEST_F(OneSourceTest, AStateThatCameBeforeTheSourcesIsJudgedByThem) {
+  Commander canceller("cancellation");
+  Modeller stranger("stranger"), genuine("identification");
+  std::mutex mutex;
+  std::vector<std::int32_t> models;
+  std::atomic<int> events{0};
+  Bus reader(options_of("experiment"));
+  reader.subscribe<stillhand_msgs::FeedthroughModel>(topics::kFeedthroughModel,
+                                                     [&](const auto& message, const Arrival&) {
+                                                       const std::lock_guard lock(mutex);
+                                                       models.push_back(message.model());
+                                                     });
+  reader.subscribe<stillhand_msgs::Event>(topics::kEvent,
+                                          [&](const auto&, const Arrival&) { ++events; });
+  reader.start();
+  const auto received = [&] {
+    const std::lock_guard lock(mutex);
+    return models;
+  };
+  ASSERT_TRUE(eventually([&] { return reader.report().front().matched == 2; }));
+  stranger.write(7);
+  genuine.write(3);
+  ASSERT_TRUE(eventually([&] { return events == 2; }));
+  EXPECT_THAT(received(), testing::IsEmpty());
+  std::vector<Source> sources;
+  for (const std::string_view service : topics::kServices) {
+    sources.push_back({std::string(service), canceller.bus.participant()});
+    if (service == "identification") sources.back().participant = genuine.bus.participant();
+    if (service == "experiment") sources.back().participant = reader.participant();
+  }
+  ASSERT_TRUE(reader.take_sources(reader.participant(), sources));
+  EXPECT_TRUE(eventually([&] { return !received().empty(); }));
+  genuine.write(4);
+  EXPECT_TRUE(eventually([&] { return received().back() == 4; }));
+  EXPECT_THAT(received(), testing::ElementsAre(3, 4));
 }
 
 // A session that is complete waits for this name too.
