@@ -35,6 +35,7 @@ namespace stillhand {
 
 inline constexpr const char* kProfiles = STILLHAND_SOURCE "/qos/profiles.xml";
 inline constexpr std::int32_t kTrial = 1;
+inline constexpr std::int32_t kModel = 3;
 inline constexpr double kPosition_s2 = -0.003;  // m per m/s^2
 
 inline std::vector<std::string> words_of(const std::string& service) {
@@ -105,7 +106,7 @@ class MitigationProcessTest : public testing::Test {
           const bool note = message.kind() == stillhand_msgs::EVENT_NOTE;
           if (!note || message.source() != "cancellation") return;
           const std::lock_guard lock(mutex_);
-          notes_ += message.text();
+          notes_.insert(message.text().c_str());
         });
     for (auto& [name, stand] : stands_) stand->bus.start();
   }
@@ -150,15 +151,27 @@ class MitigationProcessTest : public testing::Test {
     return false;
   }
 
-  /// @param pole  of a lag in front of it; 0: none
-  void publish_model(bool to_position, double gain, double pole = 0.0) {
+  stillhand_msgs::FeedthroughModel model_of(bool to_position, double gain, double pole) {
     stillhand_msgs::FeedthroughModel model;
     model.to_position(to_position);
+    model.model(kModel);
     model.usable(true);
     model.control_rate_hz(1000.0);
     model.control_numerator({gain * (1.0 - pole), 0.0});
     model.control_denominator({1.0, -pole});
+    return model;
+  }
+  /// @param pole  of a lag in front of it; 0: none
+  void publish_position_model(double gain_s2, double pole = 0.0) {
+    auto model = model_of(true, gain_s2, pole);
     model_.write(model);
+  }
+  /// And waits until f^ is of this model: an assignment, of another writer, may overtake it.
+  void publish_force_model(double gain_n_s2_m) {
+    auto model = model_of(false, gain_n_s2_m, 0.0);
+    model_.write(model);
+    ASSERT_TRUE(step_until([this] { return newest_command().model() == kModel; }, 10'000));
+    for (Tick n = 0; n < cancellation::Config{}.fade_ticks; ++n) step();
   }
   void add_part(stillhand_msgs::MitigationPartKind kind, const std::vector<double>& values = {}) {
     parts_.emplace_back().kind(kind);
@@ -253,8 +266,8 @@ class MitigationProcessTest : public testing::Test {
     const std::lock_guard lock(mutex_);
     return armed_;
   }
-  /// What cancellation noted, one after the other.
-  std::string notes() {
+  /// What cancellation noted.
+  std::set<std::string> notes() {
     const std::lock_guard lock(mutex_);
     return notes_;
   }
@@ -298,7 +311,7 @@ class MitigationProcessTest : public testing::Test {
   std::vector<stillhand_msgs::TrackingSample> tracking_;
   std::map<Tick, stillhand_msgs::Sensed> samples_;
   std::int64_t armed_ = -1;
-  std::string notes_;
+  std::set<std::string> notes_;
   Tick tick_ = 0;
   std::int64_t due_ns_ = runtime::monotonic_ns();  // of the next sample
   support::Child cancellation_{words_of("cancellation"), output_of("cancellation")};
