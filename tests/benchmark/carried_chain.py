@@ -37,7 +37,11 @@ import numpy
 
 from carried_pairs import column, field, folder_of_pairs, fresh, planted
 from carried_table import WORST, compare, print_table, ratio
-from recorded_data import BUILD, SKIPPED
+from recorded_data import BUILD, SKIPPED, SOURCE
+
+sys.path.insert(0, str(SOURCE / "tests" / "naming"))
+
+from score import judged  # noqa: E402
 
 STEPS = ("diagnose", "predict", "export", "motor")
 LIMIT_S = 900
@@ -149,25 +153,6 @@ class Chain:
         row["named"] = judged(self.pair.truth, row.get("effects"), self.pair.too_small)
         row["errors"] = self.errors
         return row
-
-
-def matches(effect, named):
-    """A free form of the right channel is right too: of a shape without a name nothing more can be said."""
-    if named["kind"] == "free_form":
-        return named["channel"] in (effect.get("channel") or "").split("*")
-    return any(kind == named["kind"] and channel in (None, named["channel"]) for kind, channel in effect["right"])
-
-
-def judged(truth, named, too_small):
-    if truth is None or named is None:
-        return None
-    if not truth:
-        return "false alarm" if named else "quiet"
-    if not named:
-        return "quiet" if too_small else "missed"
-    hit = [any(matches(effect, each) for each in named) for effect in truth]
-    others = [each for each in named if not any(matches(effect, each) for effect in truth)]
-    return "all" if all(hit) and not others else "part" if any(hit) else "wrong"
 
 
 def main():

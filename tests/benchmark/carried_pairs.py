@@ -11,7 +11,7 @@ import typing
 import numpy
 import scipy.signal
 
-from recorded_data import BUILD, DATA
+from recorded_data import BUILD, DATA, SOURCE
 
 # Titles and units that recordings of others use, in SI.
 TITLES = ("Time (s)=t [s]", "Acc Y (g)=a_y [g]", "Force (lbf)=f [lbf]", "Temp=temp [degC]")  # for --map
@@ -76,7 +76,7 @@ def folder_of_pairs(folder):
 
 def fresh(folder, count, seed):
     if not (folder / f"rec_{count:04d}.truth.json").is_file():
-        subprocess.run([sys.executable, pathlib.Path(__file__).with_name("fresh_bodies.py"), "--count", str(count), "--seed",
+        subprocess.run([sys.executable, SOURCE / "tests" / "naming" / "fresh_bodies.py", "--count", str(count), "--seed",
                         str(seed), "--out", folder], check=True, stdout=subprocess.DEVNULL)
     return folder_of_pairs(folder)
 

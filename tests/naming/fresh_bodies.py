@@ -8,7 +8,7 @@ rec_0001.truth.json the effects, their sizes, the error of the best linear model
 records one has no effect; of the others every second one's first effect is of a well-known kind. A record is
 determined by the seed and its number.
 
-    python3 tests/benchmark/fresh_bodies.py --count 60 --seed 1 --out DIR      # about 10 s of a processor a record
+    python3 tests/naming/fresh_bodies.py --count 60 --seed 1 --out DIR      # about 10 s of a processor a record
 """
 import argparse
 import json
