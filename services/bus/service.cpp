@@ -6,6 +6,7 @@
 #include <cstring>
 #include <iostream>
 #include <optional>
+#include <thread>
 
 #include "idl/session_state.hpp"
 #include "services/bus/clock_answer.hpp"
@@ -15,10 +16,13 @@
 #include "services/bus/trial_codec.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/process/clock.hpp"
 #include "services/system/process/real_time.hpp"
 
 namespace stillhand::runtime {
 namespace {
+
+constexpr std::int64_t kStallPeriod_ns = 100'000'000;  // StallWatch::step()
 
 stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
   switch (kind) {
@@ -59,7 +63,6 @@ struct Service::Reporting {
             status.state(stillhand_msgs::SERVICE_RUNNING);
           }
           service.end_without_experiment();
-          service.note_stall();
         }) {}
   Reporter reporter;
   int without_experiment = 0;  // statuses
@@ -134,13 +137,18 @@ void Service::end_without_experiment() {
   if (reporting_->without_experiment > kPatience) stop_.request();
 }
 
-// A process that waits for another one's samples is silent, too: the kernel knows no reason of its
-// own for it, and it says nothing.
-void Service::note_stall() {
-  const std::optional<Stall> stall = stall_watch_.step();
-  if (!stall || stall->why.empty()) return;
-  note_event(stillhand_msgs::EVENT_CYCLE_MISSED, stall->why.c_str(), 1e6 * stall->late_s,
-             stillhand_msgs::CODE_STALL);
+// A thread of its own: life signs do not wait for the kernel's trace.  A process that waits for
+// another one's samples is silent, too: the kernel knows no reason of its own for it, and it says
+// nothing.
+void Service::note_stalls(const std::stop_token& stop) {
+  become_background();
+  while (!stop.stop_requested()) {
+    sleep_until_ns(monotonic_ns() + kStallPeriod_ns);
+    const std::optional<Stall> stall = stall_watch_.step();
+    if (!stall || stall->why.empty()) continue;
+    note_event(stillhand_msgs::EVENT_CYCLE_MISSED, stall->why.c_str(), 1e6 * stall->late_s,
+               stillhand_msgs::CODE_STALL);
+  }
 }
 
 // The reporter's thread uses the bus, and the bus's threads the reporter: the thread goes first,
@@ -182,6 +190,7 @@ void Service::run(const std::function<void()>& loop) {
   const Quiet quiet{*this};
   bus_->start();
   reporting_->reporter.start();
+  const std::jthread stalls([this](const std::stop_token& stop) { note_stalls(stop); });
   loop();
 }
 

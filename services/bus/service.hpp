@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "idl/session.h"
@@ -84,7 +85,7 @@ class Service {
 
  private:
   void end_without_experiment();
-  void note_stall();
+  void note_stalls(const std::stop_token& stop);
 
   ServiceOptions options_;
   bool ticks_evenly_;  // a tick after the other, as they come

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <pthread.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -12,11 +13,15 @@
 #include <utility>
 
 #include "services/system/process/clock.hpp"
+#include "services/system/process/real_time.hpp"
 
 namespace stillhand::runtime {
 namespace {
 
 constexpr std::int64_t kLeast_ns = 5'000'000;
+constexpr const char* kHeldBack = "held back, as by its group's quota of processor time";
+constexpr std::int64_t kWorthATrace_ns = 20'000'000;
+constexpr std::int64_t kBetweenTraces_ns = 2'000'000'000;
 
 sigset_t continue_signal() {
   sigset_t set;
@@ -29,10 +34,20 @@ std::string milliseconds(std::int64_t ns) {
   return std::to_string((ns + 500'000) / 1'000'000) + " ms";
 }
 
+std::string taken_by(const Occupation& meanwhile, std::int64_t least_ns) {
+  if (meanwhile.had_ns >= least_ns) {
+    return "; " + meanwhile.program + " had it for " + milliseconds(meanwhile.had_ns);
+  }
+  // Ready next to an idle processor.
+  if (meanwhile.idle_ns >= least_ns) return std::string("; it was idle: ") + kHeldBack;
+  return {};
+}
+
 }  // namespace
 
 std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const ThreadAccount& earlier,
-                       const ThreadAccount& before, const ThreadAccount& after) {
+                       const ThreadAccount& before, const ThreadAccount& after,
+                       const Occupation& meanwhile) {
   if (before.at_ns == 0 || before.at_ns > from_ns || after.at_ns < until_ns) return {};
   const std::int64_t silent_ns = until_ns - from_ns;
   // The share of the time outside of the silence that the thread usually spends so.
@@ -46,19 +61,31 @@ std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const Thread
     return static_cast<std::int64_t>(static_cast<double>(after.*spent - before.*spent) -
                                      share * outside_ns);
   };
-  const auto most_of_it = [&](std::int64_t spent_ns) { return spent_ns > silent_ns / 2; };
-  if (const std::int64_t waited_ns = beyond_usual_ns(&ThreadAccount::waited_ns);
-      most_of_it(waited_ns)) {
-    return "waited " + milliseconds(waited_ns) + " for a processor";
+  const std::int64_t waited_ns = beyond_usual_ns(&ThreadAccount::waited_ns);
+  const std::int64_t ran_ns = beyond_usual_ns(&ThreadAccount::ran_ns);
+  if (waited_ns > silent_ns / 2) {
+    return "waited " + milliseconds(std::min(waited_ns, silent_ns)) + " for a processor" +
+           taken_by(meanwhile, silent_ns / 2);
   }
-  if (const std::int64_t ran_ns = beyond_usual_ns(&ThreadAccount::ran_ns); most_of_it(ran_ns)) {
-    return "worked for " + milliseconds(ran_ns);
-  }
+  if (ran_ns > silent_ns / 2) return "worked for " + milliseconds(std::min(ran_ns, silent_ns));
   if (after.continued > before.continued) return "stopped by a signal";
   if (const std::int64_t pages = after.disk_pages - before.disk_pages; pages > 0) {
     return "waited for " + std::to_string(pages) + " pages of memory from a disk";
   }
-  return {};
+  switch (meanwhile.left_as) {
+    case 'T':
+      return "stopped by a signal";
+    case 't':
+      return "stopped by a debugger";
+    case 'D':
+      return "blocked in the kernel, as by a disk or its group's freezer";
+    case 'R':  // ready, and yet it neither ran nor waited
+      return after.ran_ns - before.ran_ns + after.waited_ns - before.waited_ns < silent_ns / 4
+                 ? kHeldBack
+                 : std::string{};
+    default:
+      return {};
+  }
 }
 
 StallWatch::StallWatch() {
@@ -77,7 +104,7 @@ void StallWatch::beat() noexcept {
     thread_.store(gettid(), std::memory_order_relaxed);
     return;
   }
-  if (now_ns - from_ns >= kLeast_ns) silences_.push({from_ns, now_ns});
+  if (now_ns - from_ns >= kLeast_ns) silences_.push({from_ns, now_ns, sched_getcpu()});
 }
 
 ThreadAccount StallWatch::account() {
@@ -96,6 +123,17 @@ ThreadAccount StallWatch::account() {
   if (getrusage(RUSAGE_SELF, &usage) == 0) account.disk_pages = usage.ru_majflt;
   account.at_ns = monotonic_ns();
   return account;
+}
+
+// On a machine that is too busy, reading for each silence would make it busier.
+Occupation StallWatch::meanwhile(const Silence& silence) {
+  const std::int64_t now_ns = monotonic_ns();
+  if (silence.until_ns - silence.from_ns < kWorthATrace_ns) return {};
+  if (asked_ns_ != 0 && now_ns - asked_ns_ < kBetweenTraces_ns) return {};
+  asked_ns_ = now_ns;
+  const OrdinaryWhile ordinary;
+  return switches_.of(silence.processor, thread_.load(std::memory_order_relaxed), silence.from_ns,
+                      silence.until_ns);
 }
 
 std::optional<Stall> StallWatch::step() {
@@ -120,7 +158,8 @@ std::optional<Stall> StallWatch::step() {
   stall.late_s = 1e-9 * static_cast<double>(longest.until_ns - longest.from_ns);
   if (before != accounts_.end()) {
     const ThreadAccount earlier = before + 1 == accounts_.end() ? ThreadAccount{} : before[1];
-    stall.why = why_silent(longest.from_ns, longest.until_ns, earlier, *before, accounts_.front());
+    stall.why = why_silent(longest.from_ns, longest.until_ns, earlier, *before, accounts_.front(),
+                           meanwhile(longest));
   }
   return stall;
 }

@@ -10,6 +10,8 @@
 #include <optional>
 #include <string>
 
+#include "services/system/process/switch_trace.hpp"
+
 namespace stillhand::runtime {
 
 /// What the kernel counted for a thread, proc_pid_schedstat(5), and for its process, getrusage(2).
@@ -28,15 +30,17 @@ struct Stall {
 };
 
 /// Why a thread was silent from `from_ns` to `until_ns`: what the account grew by in this time,
-/// beyond what it grows by otherwise.  Pure.
+/// beyond what it grows by otherwise, and what its processor did meanwhile.  Pure.
 /// @param earlier  the account before `before`: the usual growth
 /// @param before   the last one before the silence
 /// @param after    the first one behind it
 std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const ThreadAccount& earlier,
-                       const ThreadAccount& before, const ThreadAccount& after);
+                       const ThreadAccount& before, const ThreadAccount& after,
+                       const Occupation& meanwhile = {});
 
 /// Notices that a thread stood still, and says why.  Needs no rights: a process may read its own
-/// accounts.  Costs the thread one reading of the clock a beat.
+/// accounts.  Who had the processor is known where SwitchTrace is to be had.  Costs the thread one
+/// reading of the clock a beat.
 class StallWatch {
  public:
   /// Blocks SIGCONT for this thread and those it starts, so that step() can count it; a thread that
@@ -53,17 +57,21 @@ class StallWatch {
   std::optional<Stall> step();
 
  private:
+  struct Silence {
+    std::int64_t from_ns, until_ns;
+    int processor;
+  };
   [[nodiscard]] ThreadAccount account();
+  [[nodiscard]] Occupation meanwhile(const Silence& silence);
 
   std::atomic<pid_t> thread_{0};
   std::int64_t last_ns_ = 0;  // of the thread that is watched
-  struct Silence {
-    std::int64_t from_ns, until_ns;
-  };
   boost::lockfree::spsc_queue<Silence, boost::lockfree::capacity<16>> silences_;
   std::array<ThreadAccount, 64> accounts_{};  // newest first, 6 s
   std::int64_t continued_ = 0;
   int schedstat_ = -1;  // kept open: two calls a look
+  SwitchTrace switches_;
+  std::int64_t asked_ns_ = 0;  // the trace
 };
 
 }  // namespace stillhand::runtime

@@ -134,5 +134,49 @@ TEST(StallWatchDeathTest, NamesASignalThatStoppedTheProcess) {
   EXPECT_EXIT(stopped_and_continued(), testing::ExitedWithCode(0), "");
 }
 
+/// Keeps the first processor busy for this long, before any ordinary thread; needs the right to.
+void hold_the_processor(std::int64_t length_ns) {
+  cpu_set_t first;
+  CPU_ZERO(&first);
+  CPU_SET(0, &first);
+  sched_setaffinity(0, sizeof(first), &first);
+  const sched_param highest{.sched_priority = 50};
+  if (sched_setscheduler(0, SCHED_FIFO, &highest) != 0) return;
+  for (const std::int64_t end_ns = monotonic_ns() + length_ns; monotonic_ns() < end_ns;) {
+  }
+}
+
+void stand_behind_another() {
+  cpu_set_t first;
+  CPU_ZERO(&first);
+  CPU_SET(0, &first);
+  pthread_setaffinity_np(pthread_self(), sizeof(first), &first);
+  std::atomic<bool> ended{false};
+  std::thread other([&ended] {
+    hold_the_processor(120 * kMs);
+    ended = true;
+  });
+  while (!ended) {  // runnable all the time
+  }
+  other.join();
+}
+
+TEST(StallWatchTest, NamesTheProgramThatHadTheProcessor) {
+  const SwitchTrace rights;
+  const sched_param highest{.sched_priority = 50};
+  if (!rights.available() || sched_setscheduler(0, SCHED_FIFO, &highest) != 0) {
+    GTEST_SKIP() << "needs the kernel's trace and real-time priority";
+  }
+  const sched_param ordinary{.sched_priority = 0};
+  sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  Watched sut;
+  sut.once(&stand_behind_another);
+  const auto stall = sut.stall(0.12);
+  ASSERT_TRUE(stall);
+  EXPECT_TRUE(stall->why.starts_with("waited ")) << stall->why;
+  if (stall->late_s > 0.2) return;  // others' work was longer
+  EXPECT_NE(stall->why.find("; unit_runtime had it for "), std::string::npos) << stall->why;
+}
+
 }  // namespace
 }  // namespace stillhand::runtime
