@@ -10,6 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/before_effects.hpp"
+#include "services/core/diagnosis/body_order.hpp"
 #include "services/core/diagnosis/detection/detection_limit.hpp"
 #include "services/core/diagnosis/effect_sizes.hpp"
 #include "services/core/diagnosis/first_model.hpp"
@@ -300,6 +301,100 @@ double limit_of(const Diagnosis& diagnosis, const Signals& signals, const Blocks
          gain;
 }
 
+// A reason not to look for effects, if there is one.
+void settle(Diagnosis& diagnosis, std::optional<NoModel> reason) {
+  if (!reason) return;
+  diagnosis.no_model = std::move(reason);
+  diagnosis.options.search.most_effects = 0;
+}
+
+// Channels that another reading explains: exchanged, or one of them late.
+std::optional<NoModel> channels_refused(const Measurement& working, const Signals& signals,
+                                        const Blocks& blocks, const Model& baseline,
+                                        const DiagnoseOptions& options) {
+  std::optional<NoModel> reason =
+      exchanged_of(working, signals, blocks, baseline, options.order, options.heaviest_kg);
+  return reason ? reason : late_of(working, signals, blocks, baseline, options.order);
+}
+
+// What every residual of this recording is asked with.
+struct Questions {
+  explicit Questions(const Signals& signals)
+      : impulse_response(fit_impulse_response(signals)),
+        excitation(periodic_excitation_of(signals)) {}
+  [[nodiscard]] auto of(const Screening& screening) const {
+    return detected(screening, excitation);
+  }
+
+  ImpulseResponse impulse_response;
+  std::optional<PeriodicExcitation> excitation;
+};
+
+void take_found(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks) {
+  diagnosis.model = diagnosis.search.model;
+  if (diagnosis.search.whitened) fit(diagnosis.model, signals, blocks, {});
+  keep_what_helps(diagnosis, signals, blocks);
+}
+
+std::optional<int> higher_order(const Diagnosis& diagnosis, const Signals& signals,
+                                const Blocks& blocks) {
+  if (diagnosis.no_model) return std::nullopt;
+  return order_instead(diagnosis.model, signals, blocks, diagnosis.options.order,
+                       diagnosis.baseline.impulse_response_rmse, diagnosis.options.search);
+}
+
+void judge(Diagnosis& diagnosis, const Measurement& working, const Signals& signals,
+           const Blocks& blocks) {
+  put_in_order(diagnosis, signals, blocks);
+  const double variance = signals.output().deviation * signals.output().deviation;
+  add_effects(diagnosis, signals, blocks, variance);
+  if (!diagnosis.no_model) {
+    diagnosis.no_model =
+        no_model_of(working, signals, blocks, diagnosis.model, diagnosis.final_error.rmse,
+                    diagnosis.options.order, diagnosis.options.heaviest_kg);
+    if (diagnosis.no_model) drop_effects(diagnosis, signals, blocks, variance);
+  }
+  add_sizes(diagnosis, signals);
+  note_refuted(diagnosis);
+  std::vector<bool> counts;
+  for (const FoundEffect& found : diagnosis.effects) counts.push_back(found.counts);
+  diagnosis.carried =
+      carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks, counts);
+  add_ties_with_time(diagnosis);
+  add_carried(diagnosis, signals, blocks, variance);
+}
+
+void look_at_the_rest(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks,
+                      const Questions& questions) {
+  const Screening screening(diagnosis.model, signals, blocks, questions.impulse_response);
+  diagnosis.after = questions.of(screening);
+  if (!is_rounding(diagnosis.final_error.rmse, signals)) {
+    diagnosis.unexplained = unexplained_of(diagnosis.after, screening);
+  }
+  diagnosis.detection_limit = limit_of(diagnosis, signals, blocks);
+  diagnosis.noise_floor = noise_floor_of(diagnosis.after, screening,
+                                         {diagnosis.final_error.low, diagnosis.final_error.high,
+                                          diagnosis.baseline.impulse_response_rmse});
+}
+
+void note_derived(Diagnosis& diagnosis, const Signals& signals) {
+  for (const Signal& signal : signals.all()) {
+    if (!signal.derived) continue;
+    const bool used = std::ranges::any_of(diagnosis.model.effects, [&](const Effect& effect) {
+      return std::ranges::find(effect.channels, signal.name) != effect.channels.end();
+    });
+    if (used) diagnosis.notes.push_back("'" + signal.name + "' was made from " + signal.source);
+  }
+}
+
+Diagnosis at_order(int order, const Measurement& measurement, DiagnoseOptions options) {
+  options.order = order;
+  Diagnosis diagnosis = diagnose(measurement, options);
+  diagnosis.notes.push_back("A body of order " + std::to_string(options.order) +
+                            " explains what one of a lower order leaves.");
+  return diagnosis;
+}
+
 }  // namespace
 
 bool Diagnosis::has_effect_that_counts() const {
@@ -319,13 +414,13 @@ double Diagnosis::detection_limit_of(const EffectKind& kind) const {
 Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& options) {
   const auto step = [&options](const std::string& name) {
     if (!options.progress(name)) throw Interrupted();
+    return true;
   };
+  check(measurement);
   Diagnosis diagnosis;
   diagnosis.options = options;
   diagnosis.screening = measurement.screening;
-  check(measurement);
-  diagnosis.no_model = before_any_fit(measurement, options.inputs, options.output);
-  if (diagnosis.no_model) diagnosis.options.search.most_effects = 0;
+  settle(diagnosis, before_any_fit(measurement, options.inputs, options.output));
   step("preparing");
   const Measurement working = working_set(measurement, options.inputs);
   diagnosis.notes = working.notes;
@@ -336,63 +431,21 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   const Blocks blocks = make_blocks(signals);
   step("baseline");
   fit_first_model(diagnosis, signals, blocks);
-  if (!diagnosis.no_model) {
-    const Model& baseline = diagnosis.baseline.model;
-    diagnosis.no_model =
-        exchanged_of(working, signals, blocks, baseline, options.order, options.heaviest_kg);
-    if (!diagnosis.no_model) {
-      diagnosis.no_model = late_of(working, signals, blocks, baseline, options.order);
-    }
-    if (diagnosis.no_model) diagnosis.options.search.most_effects = 0;
-  }
-  const ImpulseResponse impulse_response = fit_impulse_response(signals);
-  const std::optional<PeriodicExcitation> excitation = periodic_excitation_of(signals);
-  {
-    const Screening screening(diagnosis.baseline.model, signals, blocks, impulse_response);
-    diagnosis.before = detected(screening, excitation);
-  }
-  diagnosis.search = search(diagnosis.baseline, signals, blocks, diagnosis.options.search,
-                            options.for_each, [&step](const std::string& name) {
-                              step(name);
-                              return true;
-                            });
+  const Model& baseline = diagnosis.baseline.model;
+  if (!diagnosis.no_model)
+    settle(diagnosis, channels_refused(working, signals, blocks, baseline, options));
+  const Questions questions(signals);
+  diagnosis.before = questions.of(Screening(baseline, signals, blocks, questions.impulse_response));
+  diagnosis.search =
+      search(diagnosis.baseline, signals, blocks, diagnosis.options.search, options.for_each, step);
   step("judging");
-  diagnosis.model = diagnosis.search.model;
-  if (diagnosis.search.whitened) fit(diagnosis.model, signals, blocks, {});
-  keep_what_helps(diagnosis, signals, blocks);
-  put_in_order(diagnosis, signals, blocks);
-  const double variance = signals.output().deviation * signals.output().deviation;
-  add_effects(diagnosis, signals, blocks, variance);
-  if (!diagnosis.no_model) {
-    diagnosis.no_model =
-        no_model_of(working, signals, blocks, diagnosis.model, diagnosis.final_error.rmse,
-                    options.order, options.heaviest_kg);
-    if (diagnosis.no_model) drop_effects(diagnosis, signals, blocks, variance);
+  take_found(diagnosis, signals, blocks);
+  if (const std::optional<int> order = higher_order(diagnosis, signals, blocks)) {
+    return at_order(*order, measurement, options);
   }
-  add_sizes(diagnosis, signals);
-  note_refuted(diagnosis);
-  std::vector<bool> counts;
-  for (const FoundEffect& found : diagnosis.effects) counts.push_back(found.counts);
-  diagnosis.carried =
-      carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks, counts);
-  add_ties_with_time(diagnosis);
-  add_carried(diagnosis, signals, blocks, variance);
-  const Screening screening(diagnosis.model, signals, blocks, impulse_response);
-  diagnosis.after = detected(screening, excitation);
-  if (!is_rounding(diagnosis.final_error.rmse, signals)) {
-    diagnosis.unexplained = unexplained_of(diagnosis.after, screening);
-  }
-  diagnosis.detection_limit = limit_of(diagnosis, signals, blocks);
-  diagnosis.noise_floor = noise_floor_of(diagnosis.after, screening,
-                                         {diagnosis.final_error.low, diagnosis.final_error.high,
-                                          diagnosis.baseline.impulse_response_rmse});
-  for (const Signal& signal : signals.all()) {
-    if (!signal.derived) continue;
-    const bool used = std::ranges::any_of(diagnosis.model.effects, [&](const Effect& effect) {
-      return std::ranges::find(effect.channels, signal.name) != effect.channels.end();
-    });
-    if (used) diagnosis.notes.push_back("'" + signal.name + "' was made from " + signal.source);
-  }
+  judge(diagnosis, working, signals, blocks);
+  look_at_the_rest(diagnosis, signals, blocks, questions);
+  note_derived(diagnosis, signals);
   return diagnosis;
 }
 

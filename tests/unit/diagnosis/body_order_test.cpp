@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/body_order.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "services/core/diagnosis/fitting/baseline.hpp"
+#include "services/core/diagnosis/fitting/fit.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr std::size_t kCount = 6000;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// The answer of a body to a ride, cut off at `limit`, with 5 % of noise.
+Signals signals_of(const Body& body, double limit) {
+  const auto u = made::ride(kCount, 1);
+  auto y = made::answer(body.numerators[0], body.denominator, u);
+  const double rms = made::rms_of(y);
+  const auto noise = made::white(kCount, 3);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    y[n] = std::clamp(y[n], -limit * rms, limit * rms) + 0.05 * rms * noise[n];
+  }
+  return {made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y"};
+}
+
+/// A body of order 2 with a limit at its output, fitted.
+Model cut_off(const Signals& signals, const Blocks& blocks) {
+  Model model = fit_baseline(signals, blocks, 2).model;
+  const double rms = signals.output().deviation;
+  model.effects = {
+      {"output_saturation", "hard", {}, {{"limit", "N", rms, 0.1 * rms, 9.0 * rms}}, {}}};
+  fit(model, signals, blocks, {});
+  return model;
+}
+
+// Eq. DG-88.
+std::optional<int> order_of(const Body& body, double limit) {
+  const Signals signals = signals_of(body, limit);
+  const Blocks blocks = make_blocks(signals);
+  return order_instead(cut_off(signals, blocks), signals, blocks, 2, kUnknown, {});
+}
+
+TEST(OrderInsteadTest, TakesTheModesThatALowerOrderLacks) {
+  EXPECT_EQ(order_of(made::four_pole_body(), 9.0), 4);
+}
+
+TEST(OrderInsteadTest, KeepsABendThatNoBodyHas) {
+  EXPECT_EQ(order_of(made::two_pole_body(), 1.0), std::nullopt);
+  EXPECT_EQ(order_of(made::four_pole_body(), 1.0), std::nullopt);
+}
+
+TEST(OrderInsteadTest, WithoutABendALongResponseSaysThatModesAreMissing) {
+  for (const auto& [body, order] : {std::pair{made::four_pole_body(), std::optional(4)},
+                                    {made::two_pole_body(), std::nullopt}}) {
+    const Signals signals = signals_of(body, 9.0);
+    const Blocks blocks = make_blocks(signals);
+    const Baseline baseline = fit_baseline(signals, blocks, 2);
+    const double long_rmse = baseline.impulse_response_rmse;
+    EXPECT_EQ(order_instead(baseline.model, signals, blocks, 2, long_rmse, {}), order);
+    EXPECT_EQ(order_instead(baseline.model, signals, blocks, 2, kUnknown, {}), std::nullopt);
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
