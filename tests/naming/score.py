@@ -5,7 +5,7 @@
     python3 tests/naming/score.py RECORDINGS ENTRY [ENTRY...] [--each]
 
 RECORDINGS is what fresh_bodies.py wrote, an ENTRY a folder with rec_0001.json ({"effects": [{"kind", "channel"}]}) and
-rec_0001.csv (`t [s],f [N]`), either or both for each recording. Exit status 0; 2 for an entry that cannot be read.
+rec_0001.csv (`t [s],f [N]`), either or both for every recording. Exit status 0; 2 for an entry that cannot be read.
 """
 import argparse
 import csv
@@ -93,6 +93,12 @@ def scored(recordings, entry):
                      "verdict": judged(truth["effects"], named, linear < 1.01 * least), "error": error})
     if not rows:
         raise Unreadable(f"{recordings}: no *.truth.json; make them with fresh_bodies.py")
+    for answer, ending in (("named", "json"), ("error", "csv")):
+        absent = [row["name"] for row in rows if row[answer] is None]
+        if 0 < len(absent) < len(rows):
+            raise Unreadable(f"{entry}: no {absent[0]}.{ending}; an entry has one for every record, or none")
+    if all(row["named"] is None and row["error"] is None for row in rows):
+        raise Unreadable(f"{entry}: neither rec_0001.json nor rec_0001.csv is there")
     return rows
 
 
