@@ -24,10 +24,7 @@ bool drives_motor(const PlannedTrial& planned) {
 
 // A prediction of the feedthrough alone drives it.
 bool opposes_feedthrough(const PlannedTrial& planned) {
-  return drives_motor(planned) &&
-         std::ranges::none_of(planned.parts, [](const cancellation::Part& part) {
-           return part.kind == cancellation::PartKind::kImpedance;
-         });
+  return planned.cancellation || cancellation::opposes_feedthrough(planned.parts);
 }
 
 // The position's model has no number in the motor commands.  The canceller takes the newest, and a

@@ -87,8 +87,7 @@ std::vector<Part> parts_of(const stillhand_msgs::TrialAssignment& message) {
   }
   return parts;
 }
-static_assert(static_cast<std::size_t>(stillhand_msgs::PART_NOTCH) ==
-              static_cast<std::size_t>(PartKind::kNotch));
+static_assert(static_cast<std::size_t>(stillhand_msgs::PART_NOTCH) + 1 == kPartKinds);
 
 signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message,
                                  const SamplingConfig& sampling) {
