@@ -2,8 +2,7 @@
 // loop_stamps FILE: latencies of the control loop in a session's recording, by the stamps of its
 // messages, as one JSON object [us]: from the raw sample to the sensed sample, to the motor command
 // and to the rig's step that used it, and the parts between them.  The ticks are those of the
-// measured parts of the trials in which the motor may act.  Used by loop_latency.py and
-// device_latency.py.
+// measured parts of the trials in which the motor may act.  Used by loop_latency.py.
 #include <algorithm>
 #include <iostream>
 #include <map>

@@ -47,10 +47,6 @@ class DriveEmulator {
   /// Number of its mode or state.
   [[nodiscard]] virtual int mode() const = 0;
   [[nodiscard]] virtual const DriveRecord& record() const = 0;
-  /// Torque of the newest command that it follows.
-  [[nodiscard]] virtual double forward_n_m() const = 0;
-  /// What an answer would carry now, rounded as it carries it.
-  [[nodiscard]] virtual DriveSenses reported() const = 0;
 
   /// Its counter is 0 now.
   virtual void begin(std::int64_t now_ns) = 0;

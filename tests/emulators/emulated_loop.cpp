@@ -91,19 +91,7 @@ void EmulatedLoop::run(Person* person) {
 }
 
 void EmulatedLoop::hear_drive(std::int64_t now_ns) {
-  const std::uint64_t before = drive_.record().commands;
-  const std::string answer = drive_.take(serial_.read(), now_ns);
-  const std::int64_t acted_ns = runtime::monotonic_ns();
-  serial_.write(answer, now_ns);
-  if (drive_.record().commands > before) trace_.torque(acted_ns, drive_.forward_n_m());
-  if (!answer.empty()) {
-    const DriveSenses reported = drive_.reported();
-    trace_.reply({.sampled_ns = stepped_ns_,
-                  .sent_ns = runtime::monotonic_ns(),
-                  .analog1 = reported.analog1,
-                  .analog2 = reported.analog2,
-                  .position_rev = reported.position_rev});
-  }
+  serial_.write(drive_.take(serial_.read(), now_ns), now_ns);
 }
 
 void EmulatedLoop::hear_platform(std::int64_t now_ns) {
@@ -144,12 +132,6 @@ void EmulatedLoop::execute(const std::string& line, std::int64_t now_ns) {
     std::string text;
     words >> name >> text;
     return drive_.set(name, text);
-  }
-  if (word == "trace") return trace_.begin();
-  if (word == "write_trace") {
-    std::string file;
-    words >> file;
-    return trace_.write(file);
   }
   words >> value;
   fault_ns_ = now_ns;

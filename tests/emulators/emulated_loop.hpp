@@ -14,7 +14,6 @@
 #include "tests/emulators/indicator_side.hpp"
 #include "tests/emulators/laboratory.hpp"
 #include "tests/emulators/serial_side.hpp"
-#include "tests/emulators/trace.hpp"
 
 namespace stillhand::emulators {
 
@@ -73,7 +72,6 @@ class EmulatedLoop {
   std::int64_t platform_until_ns_ = 0;  ///< newest time at which the platform followed
   std::int64_t stepped_ns_ = 0;         ///< newest step
   std::int64_t worst_step_ns_ = 0;      ///< longest time between two steps
-  Trace trace_;
 };
 
 }  // namespace stillhand::emulators

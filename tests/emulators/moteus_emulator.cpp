@@ -361,18 +361,6 @@ void MoteusEmulator::console(std::string_view text) {
   }
 }
 
-DriveSenses MoteusEmulator::reported() const {
-  const auto rounded = [this](std::uint32_t address, unsigned format) {
-    const double step = scale(address, format);
-    return step * static_cast<double>(std::lround(of_register(address, began_ns_) / step));
-  };
-  DriveSenses out = senses_;
-  out.position_rev = rounded(0x01, 2);
-  out.analog1 = rounded(0x60, 1);
-  out.analog2 = rounded(0x68, 1);
-  return out;
-}
-
 double MoteusEmulator::of_register(std::uint32_t address, std::int64_t now_ns) const {
   // Converters of 12 bit.
   const auto converted = [](double share) {

@@ -27,8 +27,6 @@ class MoteusEmulator final : public DriveEmulator {
   [[nodiscard]] bool follows() const override { return mode_ == 10; }
   [[nodiscard]] int mode() const override { return mode_; }
   [[nodiscard]] const DriveRecord& record() const override { return record_; }
-  [[nodiscard]] double forward_n_m() const override { return forward_n_m_; }
-  [[nodiscard]] DriveSenses reported() const override;
 
   void begin(std::int64_t now_ns) override { began_ns_ = now_ns; }
   void reboot(std::int64_t now_ns) override;

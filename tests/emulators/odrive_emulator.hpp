@@ -26,9 +26,6 @@ class OdriveEmulator final : public DriveEmulator {
   [[nodiscard]] bool follows() const override { return state_ == kClosedLoop; }
   [[nodiscard]] int mode() const override { return state_; }
   [[nodiscard]] const DriveRecord& record() const override { return record_; }
-  [[nodiscard]] double forward_n_m() const override { return input_torque_; }
-  /// Of its position and velocity alone; it has no analogue input here.
-  [[nodiscard]] DriveSenses reported() const override { return senses_; }
 
   void begin(std::int64_t now_ns) override { began_ns_ = fed_ns_ = now_ns; }
   void reboot(std::int64_t now_ns) override;

@@ -10,7 +10,7 @@ import lab_process
 from lab_process import BUILD, STILLHAND, wait_for
 from verb_case import FolderCase
 
-LOAD = BUILD / "tests" / "bus_load"
+LOAD = BUILD / "tests" / "write_load"
 # Seconds of work for either verb: 2 million messages, where a signal finds its way within milliseconds.
 RATE = 100_000
 LENGTH_S = 20
@@ -24,7 +24,7 @@ class InterruptedVerbsTest(FolderCase):
         shared = tempfile.TemporaryDirectory(prefix="stillhand-")
         cls.addClassCleanup(shared.cleanup)
         cls.recording = pathlib.Path(shared.name) / "long.mcap"
-        subprocess.run([str(LOAD), "--write", str(cls.recording), str(RATE), str(LENGTH_S)], check=True)
+        subprocess.run([str(LOAD), str(cls.recording), str(RATE), str(LENGTH_S)], check=True)
         os.truncate(cls.recording, cls.recording.stat().st_size - 1000)  # as a crash leaves it
 
     def assert_interrupted(self, wanted, piece, *words):

@@ -128,31 +128,6 @@ class Machine:
     def plug_back(self):
         run("ip", "-n", self.network.switch, "link", "set", self.port, "up")
 
-    @contextlib.contextmanager
-    def losing(self, share):
-        """Loses this share of the packets that reach it or leave it."""
-        rule = ["-m", "statistic", "--mode", "random", "--probability", str(share), "-j", "DROP"]
-        # What stays on the machine goes through the loopback.
-        self.run("iptables", "-A", "INPUT", "-i", "eth0", *rule)
-        self.run("iptables", "-A", "OUTPUT", "-o", "eth0", *rule)
-        try:
-            yield
-        finally:
-            self.run("iptables", "-F")
-
-    @contextlib.contextmanager
-    def limited_to(self, bits_per_s):
-        """Gives its cable this rate in both directions."""
-        ends = (self.namespace, "eth0"), (self.network.switch, self.port)
-        for namespace, device in ends:
-            run("tc", "-n", namespace, "qdisc", "add", "dev", device, "root", "tbf", "rate", f"{bits_per_s:.0f}bit",
-                "burst", "32kbit", "latency", "50ms")
-        try:
-            yield
-        finally:
-            for namespace, device in ends:
-                run("tc", "-n", namespace, "qdisc", "del", "dev", device, "root")
-
 
 class Network:
     """The lab; close() leaves nothing of it."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stillhand record` and `stillhand replay` on a running bus: every command, remote and from the keyboard.
 
-What is recorded comes from publish_samples (four topics, one sample each millisecond), what is replayed from bus_load
+What is recorded comes from publish_samples (four topics, one sample each millisecond), what is replayed from write_load
 (ten topics load/0 to load/9, evenly). No session is needed.
 """
 import os
@@ -16,7 +16,7 @@ from bus_case import LIMIT_S, Bus, wait_for
 from lab_process import BUILD, STILLHAND
 from verb_case import stillhand
 
-LOAD = BUILD / "tests" / "bus_load"
+LOAD = BUILD / "tests" / "write_load"
 PUBLISH = BUILD / "tests" / "publish_samples"
 ANSWER = re.compile(r"(?P<at>[\d.]+) of (?P<length>[\d.]+) s, rate (?P<rate>[\d.e+-]+)(?P<flags>[^\d]*), (?P<count>\d+)")
 
@@ -88,7 +88,7 @@ class RefusedTest(Verbs):
 
     def write_load(self):
         self.file = self.folder / "load.mcap"
-        subprocess.run([str(LOAD), "--write", str(self.file), "1000", "2"], check=True)
+        subprocess.run([str(LOAD), str(self.file), "1000", "2"], check=True)
 
 
 class RecordTest(Verbs):
@@ -130,7 +130,9 @@ class RecordTest(Verbs):
         wait_for("the topics of the bus", lambda: "stillhand/sensed" in recorder.said())
         self.assertIn("no topic", recorder.said())
         # What is found after the first warning is named too.
-        self.start(LOAD, self.domain, 100, 60)
+        load = self.folder / "load.mcap"
+        subprocess.run([str(LOAD), str(load), "100", "60"], check=True)
+        self.verb("replay", load)
         wait_for("a later topic", lambda: "load/0" in recorder.said())
 
     def test_a_request_without_a_recorder_is_answered_by_an_error(self):
@@ -209,7 +211,7 @@ class ReplayTest(Verbs):
     def setUp(self):
         super().setUp()
         self.file = self.folder / "load.mcap"
-        subprocess.run([str(LOAD), "--write", str(self.file), str(self.RATE), str(self.LENGTH_S)], check=True)
+        subprocess.run([str(LOAD), str(self.file), str(self.RATE), str(self.LENGTH_S)], check=True)
 
     def replay(self, *words, **keywords):
         replay = self.verb("replay", self.file, *words, **keywords)
