@@ -150,7 +150,6 @@ class Run {
     tap.domain = options_.domain;
     tap.profiles = options_.profiles;
     tap.security = options_.security;
-    tap.batched = true;
     tap.wanted = [this](const std::string& topic) {
       return filter_.wants(topic) &&
              std::ranges::find(ros2::sources(), topic) != ros2::sources().end();

@@ -106,7 +106,7 @@ edds::DomainParticipant* create_participant(std::uint32_t domain, edds::DomainPa
 edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
                                             std::uint32_t domain, const std::string& name,
                                             bool marked, const Identity& identity,
-                                            DiscoveryListener* listener, const AdaptQos& adapt) {
+                                            DiscoveryListener* listener) {
   if (domain > kMaxDomain) {
     throw ConfigError("domain", std::to_string(domain), "0 to " + std::to_string(kMaxDomain));
   }
@@ -121,11 +121,7 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   check_surroundings(qos, profiles.string() + ": interfaceWhiteList");
   qos.name(name);
   if (marked) qos.user_data().data_vec(replay_mark());
-  if (!identity.none()) {
-    secure(qos, identity);
-  } else if (adapt) {
-    adapt(qos);
-  }
+  if (!identity.none()) secure(qos, identity);
   auto* participant = create_participant(domain, qos, listener);
   if (!identity.none() && !is_secured(*participant, identity)) {
     factory->delete_participant(participant);

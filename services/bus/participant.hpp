@@ -3,7 +3,6 @@
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <filesystem>
-#include <functional>
 #include <string>
 
 #include "fast_dds/names.hpp"
@@ -17,19 +16,14 @@ void load_profiles(const std::filesystem::path& file);
 
 class DiscoveryListener;
 
-/// Changes the QoS of a participant before it is created.
-using AdaptQos = std::function<void(edds::DomainParticipantQos&)>;
-
 /// A participant of the profile "stillhand_participant".
 /// @param marked  it carries the replay's mark
-/// @param adapt   optional; not called with an identity
 /// @throws ConfigError for a bad domain, missing profile or a fault of the identity, BusError when
 /// DDS refuses or runs without the requested security.
 edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
                                             std::uint32_t domain, const std::string& name,
                                             bool marked, const Identity& identity,
-                                            DiscoveryListener* listener,
-                                            const AdaptQos& adapt = {});
+                                            DiscoveryListener* listener);
 
 /// A participant of this QoS that sends to no multicast group but for discovery.
 /// @param listener  optional  @throws BusError when DDS refuses

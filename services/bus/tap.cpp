@@ -13,13 +13,11 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <thread>
 
 #include "fast_dds/discovery.hpp"
 #include "idl/topics.hpp"
-#include "services/bus/batched/batched_reader.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/discovered_qos.hpp"
 #include "services/bus/found_writers.hpp"
@@ -61,9 +59,7 @@ struct Tap::Impl final : DiscoveryListener {
   using ReaderKey = std::pair<std::string, ReaderClass>;
   struct Reader;
 
-  explicit Impl(Options given) : options(std::move(given)) {
-    if (options.batched) batched.emplace(writers, options.on_sample);
-  }
+  explicit Impl(Options given) : options(std::move(given)) {}
   // Also when the constructor of Tap throws: the participant calls this as long as it is there.
   ~Impl() override {
     if (participant == nullptr) return;
@@ -90,7 +86,6 @@ struct Tap::Impl final : DiscoveryListener {
   std::deque<std::pair<ReaderKey, FoundWriter>> waiting;  // each reader's first writer
   std::vector<std::string> trouble;
   std::atomic<std::uint64_t> unattributed{0};
-  std::optional<BatchedReader> batched;  // Options::batched
 
   // Of the opening thread alone.
   std::map<std::string, edds::Topic*> topics;
@@ -229,10 +224,7 @@ Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
   // Profiles are checked before the run; the readers are created when their writers are found.
   impl_->participant =
       create_participant(impl_->options.profiles, impl_->options.domain, impl_->options.name, false,
-                         {impl_->options.security, std::string(topics::kTap)}, impl_.get(),
-                         [this](edds::DomainParticipantQos& qos) {
-                           if (impl_->batched) impl_->batched->install(qos);
-                         });
+                         {impl_->options.security, std::string(topics::kTap)}, impl_.get());
   impl_->subscriber = impl_->participant->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT);
   edds::Publisher* profiles = impl_->participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
   if (impl_->subscriber == nullptr || profiles == nullptr) {
@@ -249,7 +241,6 @@ Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
 }
 
 void Tap::start() {
-  if (impl_->batched) impl_->batched->start(*impl_->participant);
   impl_->opening =
       std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->open_readers(stop); });
 }
@@ -257,7 +248,6 @@ void Tap::start() {
 Tap::~Tap() { stop(); }
 
 void Tap::stop() {
-  if (impl_->batched) impl_->batched->stop();
   if (impl_->opening.joinable()) {
     impl_->opening.request_stop();
     impl_->opening.join();
@@ -274,8 +264,6 @@ std::vector<std::string> Tap::trouble() const {
   const std::lock_guard lock(impl_->mutex);
   return impl_->trouble;
 }
-
-std::uint64_t Tap::past_dds() const { return impl_->batched ? impl_->batched->samples() : 0; }
 
 std::uint64_t Tap::unattributed() const {
   return impl_->unattributed.load(std::memory_order_relaxed);

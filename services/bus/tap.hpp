@@ -26,10 +26,6 @@ class Tap {
     std::uint32_t domain = 0;        ///< DDS domain, 0 to 232
     std::filesystem::path profiles;  ///< qos/profiles.xml
     std::filesystem::path security;  ///< see Bus::Options; it shows topics::kTap's certificate
-    /// For a listener to many topics: best-effort samples are read in batches, past Fast DDS
-    /// (batched/batched_reader.hpp), which costs the listener and the senders less.  Without effect
-    /// on a secured domain, whose samples only Fast DDS can decrypt.
-    bool batched = false;
     std::function<bool(const std::string& topic)> wanted;
     std::function<void(const FoundWriter&, const TappedSample&)> on_sample;
     /// Optional: an instance of a writer was disposed of or given up, which takes a number of its
@@ -55,8 +51,6 @@ class Tap {
   [[nodiscard]] std::vector<FoundWriter> writers() const;
   /// Topics that could not be subscribed to, with the reason; one line each.
   [[nodiscard]] std::vector<std::string> trouble() const;
-  /// Samples that were read in batches; 0 without Options::batched.
-  [[nodiscard]] std::uint64_t past_dds() const;
   /// Samples of writers that discovery did not announce; 0 unless DDS is at fault.
   [[nodiscard]] std::uint64_t unattributed() const;
 

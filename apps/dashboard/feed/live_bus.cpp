@@ -13,7 +13,6 @@ LiveBus::LiveBus(const LiveOptions& options, Rigs& rigs)
             .domain = options.domain,
             .profiles = options.profiles,
             .security = options.security,
-            .batched = true,
             .wanted = [&rigs](const std::string& topic) { return rigs.shown().wants(topic); },
             .on_sample = [this](const runtime::FoundWriter& writer,
                                 const runtime::TappedSample& sample) { take(writer, sample); }}) {}
