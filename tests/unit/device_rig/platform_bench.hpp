@@ -41,8 +41,6 @@ class PlatformBench {
     double most_step_m = 0.0;  ///< from a set-point to the next one that came
     double most_acceleration_m_s2 = 0.0;
     double most_jerk_m_s3 = 0.0;
-    double most_seat_m_s2 = 0.0;  ///< of the seat
-    std::uint64_t followed = 0;   ///< ticks
   };
 
   PlatformBench(Parts::Platform protocol, double place_m)
@@ -181,7 +179,6 @@ class PlatformBench {
       bend_.reset();
     }
     follows_ = asked.has_value();
-    seen.followed += follows_ ? 1 : 0;
     rig::PlatformDemand demand{follows_, 0.0, 0.0, 0.0};
     demand.position_m = asked.value_or(0.0);
     if (follows_ && !moog_) {
@@ -195,7 +192,6 @@ class PlatformBench {
     const auto state = physics_.step(demand).state;
     place_m_ = shift_m_ + state.position_m;
     speed_m_s_ = state.velocity_m_s;
-    raise(seen.most_seat_m_s2, state.acceleration_m_s2);
   }
   // The walls are the guard's business: the seat's own are far away.
   static rig::PlatformConfig wide() {
