@@ -234,26 +234,5 @@ class HostileClientsTest(ClientsCase):
               f"answered, in all {honest.answered} of {honest.asked}")
 
 
-class TokenTest(DashboardCase):
-    def test_nothing_but_the_token_opens(self):
-        file = self.token_file()
-        dashboard = self.dashboard("--domain", next_domain(), "--token-file", file)
-        wrong = ("", TOKEN[:-1], TOKEN + "0", TOKEN.upper(), TOKEN[::-1], " " + TOKEN, TOKEN + ";", "%30" + TOKEN[1:], "*", TOKEN[:8] + "\x00" + TOKEN[9:],
-                 "a" * 7000, "../" + str(file), "Bearer " + TOKEN)
-        for word in wrong:
-            for request in (f"GET /snapshot HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {word}\r\n",
-                            f"GET /snapshot HTTP/1.1\r\nHost: localhost\r\nAuthorization: bearer{word}\r\n",
-                            f"GET /snapshot HTTP/1.1\r\nHost: localhost\r\nCookie: stillhand_token={word}\r\n",
-                            f"GET /snapshot?token={TOKEN} HTTP/1.1\r\nHost: localhost\r\n",
-                            f"GET /?token={word} HTTP/1.1\r\nHost: localhost\r\n",
-                            f"POST /emergency-stop?token={TOKEN} HTTP/1.1\r\nHost: localhost\r\n"):
-                answer = dashboard.raw(request.encode() + b"Connection: close\r\n\r\n")
-                if TOKEN in word.split(";")[0].split() and "Cookie" in request:
-                    continue  # spaces around a cookie's value, and what is behind ";", are not of it
-                self.assertIn(answer.split(b" ")[1:2], ([b"403"], [b"400"]), request)
-                self.assertNotIn(TOKEN.encode(), answer)
-        self.assertEqual(dashboard.ask("GET", "/snapshot", {"Authorization": "Bearer " + TOKEN})[0], 200)
-
-
 if __name__ == "__main__":
     main()

@@ -178,24 +178,11 @@ class StudyTest(FolderCase):
         out = self.folder / "study"
         people = self.folder / "people.yaml"
         people.write_text("grip_stiffness_n_m: -2400\n")
-        misspelt = self.folder / "misspelt.yaml"
-        misspelt.write_text("grip_stifness_n_m: 2400\n")
-        cases = [
-            (["--subjects", "0", "--out", out], ["--subjects", "1 to 10000"]),
-            (["--subjects", "-3", "--out", out], ["--subjects"]),
-            (["--subjects", "many", "--out", out], ["--subjects"]),
-            (["--subjects", "3", "--conditions", "A,G", "--out", out], ['"G"', "F (arm rest)"]),
-            (["--subjects", "3", "--population", people, "--out", out],
-             ["people.yaml:1", "grip_stiffness_n_m", "500 to 8000"]),
-            (["--subjects", "3", "--population", misspelt, "--out", out],
-             ["misspelt.yaml:1", "grip_stifness_n_m", "grip_stiffness_n_m"]),
-            (["--subjects", "3", "--population", self.folder / "none.yaml", "--out", out], ["none.yaml"]),
-            (["--trial-seconds", "2", "--out", out], ["--trial-seconds", "5 to 3600"]),
-            (["--subjects", "1", "--wrong-models", "--out", out], ["--wrong-models"]),
-            (["--conditions", "A,B", "--wrong-models", "--out", out], ["--wrong-models", "C"]),
-            (["--subjects", "3"], ["--out"]),
-        ]
-        for arguments, words in cases:
+        for arguments, words in ((["--subjects", "many", "--out", out], ["--subjects"]),
+                                 (["--subjects", "3", "--population", people, "--out", out],
+                                  ["people.yaml:1", "grip_stiffness_n_m", "500 to 8000"]),
+                                 (["--conditions", "A,B", "--wrong-models", "--out", out], ["--wrong-models", "C"]),
+                                 (["--subjects", "3"], ["--out"])):
             with self.subTest(arguments=arguments):
                 self.assert_not_studied(arguments, words)
 

@@ -46,16 +46,6 @@ class RefusedTest(Verbs):
         self.assertEqual(sorted(self.folder.iterdir()), before, words)
         return line
 
-    def test_values_that_are_no_seconds_or_bytes_are_refused(self):
-        file = self.folder / "a.mcap"
-        for option in ("--duration", "--rotate-s", "--rotate-mb", "--window", "--min-free-mb"):
-            for value in ("nan", "inf", "-1"):
-                self.assertIn(f"{option}: got {value}, want", self.assert_refused("record", "--out", file, option, value))
-        self.write_load()
-        for option in ("--start", "--end", "--wait-seconds", "--rate"):
-            for value in ("nan", "inf", "-1"):
-                self.assertIn(f"{option}: got {value}, want", self.assert_refused("replay", self.file, option, value))
-
     def test_a_recording_that_is_refused_leaves_no_file_and_takes_none(self):
         file = self.folder / "a.mcap"
         broken = self.folder / "broken.xml"

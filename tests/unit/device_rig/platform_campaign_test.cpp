@@ -4,7 +4,6 @@
 // in it.  Deterministic: simulated time.
 #include <gtest/gtest.h>
 
-
 #include "services/core/device_rig/platform_response.hpp"
 #include "tests/unit/device_rig/platform_bench.hpp"
 
