@@ -2,168 +2,139 @@
 #include "services/core/recording/mcap/mcap_records.hpp"
 
 #include <algorithm>
+#include <concepts>
+#include <tuple>
 
 namespace stillhand::recording {
 namespace {
 
+template <typename T, typename Record>
+concept Is = std::same_as<std::remove_const_t<T>, Record>;
+
+// The fields of a record in their order in the file, for both ways.
+auto fields(Is<Schema> auto& of) { return std::tie(of.id, of.name, of.encoding, of.bytes); }
+auto fields(Is<Channel> auto& of) {
+  return std::tie(of.id, of.schema_id, of.topic, of.message_encoding, of.metadata);
+}
+auto fields(Is<Metadata> auto& of) { return std::tie(of.name, of.texts); }
+auto fields(Is<ChunkIndex> auto& of) {
+  return std::tie(of.start_time_ns, of.end_time_ns, of.offset, of.length, of.message_index_offsets,
+                  of.message_index_length, of.compression, of.compressed_size,
+                  of.uncompressed_size);
+}
+auto fields(Is<Statistics> auto& of) {
+  return std::tie(of.message_count, of.schema_count, of.channel_count, of.attachment_count,
+                  of.metadata_count, of.chunk_count, of.start_time_ns, of.end_time_ns,
+                  of.channel_message_counts);
+}
+auto fields(Is<ChunkHead> auto& of) {
+  return std::tie(of.start_time_ns, of.end_time_ns, of.uncompressed_size, of.uncompressed_crc,
+                  of.compression, of.packed_size);
+}
+
+using IdMap = std::map<ChannelId, std::uint64_t>;
 constexpr std::uint32_t kIdMapEntryBytes = 10;  // 16-bit key, 64-bit value
 
-void put_id_map(Bytes& out, const std::map<ChannelId, std::uint64_t>& values) {
-  put(out, static_cast<std::uint32_t>(values.size() * kIdMapEntryBytes));
-  for (const auto& [id, value] : values) {
+void write(Bytes& out, std::unsigned_integral auto field) { put(out, field); }
+void write(Bytes& out, const std::string& field) { put_text(out, field); }
+void write(Bytes& out, const TextMap& field) { put_map(out, field); }
+void write(Bytes& out, const Bytes& field) {
+  put(out, static_cast<std::uint32_t>(field.size()));
+  put_bytes(out, field);
+}
+void write(Bytes& out, const IdMap& field) {
+  put(out, static_cast<std::uint32_t>(field.size() * kIdMapEntryBytes));
+  for (const auto& [id, value] : field) {
     put(out, id);
     put(out, value);
   }
 }
 
-std::map<ChannelId, std::uint64_t> take_id_map(WireReader& in) {
-  std::map<ChannelId, std::uint64_t> values;
+template <std::unsigned_integral T>
+void read(WireReader& in, T& field) {
+  field = in.take<T>();
+}
+void read(WireReader& in, std::string& field) { field = in.take_text(); }
+void read(WireReader& in, TextMap& field) { field = in.take_map(); }
+void read(WireReader& in, Bytes& field) {
+  const auto bytes = in.take_bytes(in.take<std::uint32_t>());
+  field.assign(bytes.begin(), bytes.end());
+}
+void read(WireReader& in, IdMap& field) {
   WireReader entries(in.take_bytes(in.take<std::uint32_t>()));
   while (entries.left() >= kIdMapEntryBytes) {
     const auto id = entries.take<std::uint16_t>();
-    values[id] = entries.take<std::uint64_t>();
+    field[id] = entries.take<std::uint64_t>();
   }
-  return values;
 }
 
 template <typename Record>
-std::optional<Parsed<Record>> parsed(const WireReader& in, Record record) {
+void put_record(Bytes& out, Opcode opcode, const Record& record) {
+  const std::size_t mark = begin_record(out, opcode);
+  std::apply([&](const auto&... field) { (write(out, field), ...); }, fields(record));
+  end_record(out, mark);
+}
+
+template <typename Record>
+std::optional<Parsed<Record>> parsed(std::span<const std::byte> content) {
+  WireReader in(content);
+  Record record;
+  std::apply([&](auto&... field) { (read(in, field), ...); }, fields(record));
   if (!in.ok()) return std::nullopt;
   return Parsed<Record>{std::move(record), in.left()};
 }
 
+template <typename Record>
+std::optional<Record> record_of(std::span<const std::byte> content) {
+  auto found = parsed<Record>(content);
+  if (!found) return std::nullopt;
+  return std::move(found->record);
+}
+
 }  // namespace
 
-void put_schema(Bytes& out, const Schema& schema) {
-  const std::size_t mark = begin_record(out, Opcode::kSchema);
-  put(out, schema.id);
-  put_text(out, schema.name);
-  put_text(out, schema.encoding);
-  put(out, static_cast<std::uint32_t>(schema.bytes.size()));
-  put_bytes(out, schema.bytes);
-  end_record(out, mark);
-}
+void put_schema(Bytes& out, const Schema& schema) { put_record(out, Opcode::kSchema, schema); }
 
-void put_channel(Bytes& out, const Channel& channel) {
-  const std::size_t mark = begin_record(out, Opcode::kChannel);
-  put(out, channel.id);
-  put(out, channel.schema_id);
-  put_text(out, channel.topic);
-  put_text(out, channel.message_encoding);
-  put_map(out, channel.metadata);
-  end_record(out, mark);
-}
+void put_channel(Bytes& out, const Channel& channel) { put_record(out, Opcode::kChannel, channel); }
 
 void put_metadata(Bytes& out, const std::string& name, const TextMap& texts) {
-  const std::size_t mark = begin_record(out, Opcode::kMetadata);
-  put_text(out, name);
-  put_map(out, texts);
-  end_record(out, mark);
+  put_record(out, Opcode::kMetadata, Metadata{name, texts});
 }
 
 void put_chunk_index(Bytes& out, const ChunkIndex& index) {
-  const std::size_t mark = begin_record(out, Opcode::kChunkIndex);
-  put(out, index.start_time_ns);
-  put(out, index.end_time_ns);
-  put(out, index.offset);
-  put(out, index.length);
-  put_id_map(out, index.message_index_offsets);
-  put(out, index.message_index_length);
-  put_text(out, index.compression);
-  put(out, index.compressed_size);
-  put(out, index.uncompressed_size);
-  end_record(out, mark);
+  put_record(out, Opcode::kChunkIndex, index);
 }
 
 void put_statistics(Bytes& out, const Statistics& statistics) {
-  const std::size_t mark = begin_record(out, Opcode::kStatistics);
-  put(out, statistics.message_count);
-  put(out, statistics.schema_count);
-  put(out, statistics.channel_count);
-  put(out, statistics.attachment_count);
-  put(out, statistics.metadata_count);
-  put(out, statistics.chunk_count);
-  put(out, statistics.start_time_ns);
-  put(out, statistics.end_time_ns);
-  put_id_map(out, statistics.channel_message_counts);
-  end_record(out, mark);
+  put_record(out, Opcode::kStatistics, statistics);
 }
 
 std::optional<Parsed<Schema>> parse_schema(std::span<const std::byte> content) {
-  WireReader in(content);
-  Schema schema;
-  schema.id = in.take<std::uint16_t>();
-  schema.name = in.take_text();
-  schema.encoding = in.take_text();
-  const auto bytes = in.take_bytes(in.take<std::uint32_t>());
-  schema.bytes.assign(bytes.begin(), bytes.end());
-  return parsed(in, std::move(schema));
+  return parsed<Schema>(content);
 }
 
 std::optional<Parsed<Channel>> parse_channel(std::span<const std::byte> content) {
-  WireReader in(content);
-  Channel channel;
-  channel.id = in.take<std::uint16_t>();
-  channel.schema_id = in.take<std::uint16_t>();
-  channel.topic = in.take_text();
-  channel.message_encoding = in.take_text();
-  channel.metadata = in.take_map();
-  return parsed(in, std::move(channel));
+  return parsed<Channel>(content);
 }
 
 std::optional<Parsed<Metadata>> parse_metadata(std::span<const std::byte> content) {
-  WireReader in(content);
-  Metadata metadata;
-  metadata.name = in.take_text();
-  metadata.texts = in.take_map();
-  return parsed(in, std::move(metadata));
+  return parsed<Metadata>(content);
 }
 
 std::optional<ChunkIndex> parse_chunk_index(std::span<const std::byte> content) {
-  WireReader in(content);
-  ChunkIndex index;
-  index.start_time_ns = in.take<std::uint64_t>();
-  index.end_time_ns = in.take<std::uint64_t>();
-  index.offset = in.take<std::uint64_t>();
-  index.length = in.take<std::uint64_t>();
-  index.message_index_offsets = take_id_map(in);
-  index.message_index_length = in.take<std::uint64_t>();
-  index.compression = in.take_text();
-  index.compressed_size = in.take<std::uint64_t>();
-  index.uncompressed_size = in.take<std::uint64_t>();
-  if (!in.ok()) return std::nullopt;
-  return index;
+  return record_of<ChunkIndex>(content);
 }
 
 std::optional<Statistics> parse_statistics(std::span<const std::byte> content) {
-  WireReader in(content);
-  Statistics statistics;
-  statistics.message_count = in.take<std::uint64_t>();
-  statistics.schema_count = in.take<std::uint16_t>();
-  statistics.channel_count = in.take<std::uint32_t>();
-  statistics.attachment_count = in.take<std::uint32_t>();
-  statistics.metadata_count = in.take<std::uint32_t>();
-  statistics.chunk_count = in.take<std::uint32_t>();
-  statistics.start_time_ns = in.take<std::uint64_t>();
-  statistics.end_time_ns = in.take<std::uint64_t>();
-  statistics.channel_message_counts = take_id_map(in);
-  if (!in.ok()) return std::nullopt;
-  return statistics;
+  return record_of<Statistics>(content);
 }
 
 std::optional<ChunkHead> parse_chunk_head(std::span<const std::byte> prefix,
                                           std::uint64_t content_length) {
-  WireReader in(prefix);
-  ChunkHead head;
-  head.start_time_ns = in.take<std::uint64_t>();
-  head.end_time_ns = in.take<std::uint64_t>();
-  head.uncompressed_size = in.take<std::uint64_t>();
-  head.uncompressed_crc = in.take<std::uint32_t>();
-  head.compression = in.take_text();
-  head.packed_size = in.take<std::uint64_t>();
-  if (!in.ok()) return std::nullopt;
-  const std::uint64_t before_packed = kChunkFixedBytes + head.compression.size();
-  if (before_packed > content_length || head.packed_size > content_length - before_packed) {
+  auto head = record_of<ChunkHead>(prefix);
+  if (!head) return std::nullopt;
+  const std::uint64_t before_packed = kChunkFixedBytes + head->compression.size();
+  if (before_packed > content_length || head->packed_size > content_length - before_packed) {
     return std::nullopt;
   }
   return head;
