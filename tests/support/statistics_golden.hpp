@@ -6,9 +6,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <fstream>
+#include <string>
 #include <vector>
 
+#include "places.hpp"
 #include "tests/golden/statistics/expected.hpp"
 
 namespace stillhand::support {
@@ -52,19 +54,27 @@ struct Trials {
 
 /// 0 well behaved, 1 strong effects, 2 replicated.
 inline Trials golden_trials(int set) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const auto trials = [](const double* values, Eigen::Index subjects, Eigen::Index conditions,
-                         Eigen::Index replicates, Eigen::Index metrics) {
-    const Eigen::Index rows = subjects * conditions * replicates;
-    return Trials{subjects, conditions, replicates, Eigen::Map<const Rows>(values, rows, metrics)};
+  struct Form {
+    const char* file;
+    Eigen::Index subjects, conditions, replicates, metrics;
   };
-  namespace golden = stillhand::golden::statistics;
-  static_assert(std::size(golden::kWellBehaved) == 108);
-  static_assert(std::size(golden::kStrongEffects) == 180);
-  static_assert(std::size(golden::kReplicated) == 810);
-  if (set == 0) return trials(golden::kWellBehaved, 12, 3, 1, 3);
-  if (set == 1) return trials(golden::kStrongEffects, 20, 3, 1, 3);
-  return trials(golden::kReplicated, 9, 6, 3, 5);
+  static constexpr Form kForms[] = {
+      {"well_behaved", 12, 3, 1, 3}, {"strong_effects", 20, 3, 1, 3}, {"replicated", 9, 6, 3, 5}};
+  const Form& form = kForms[set];
+  Trials out{form.subjects, form.conditions, form.replicates, {}};
+  out.values.resize(form.subjects * form.conditions * form.replicates, form.metrics);
+  std::ifstream file(std::string(STILLHAND_SOURCE "/tests/golden/statistics/") + form.file +
+                     ".csv");
+  std::string cell;
+  std::getline(file, cell);  // titles
+  for (auto row : out.values.rowwise()) {
+    for (int i = 0; i < 3; ++i) std::getline(file, cell, ',');  // subject, condition, replicate
+    for (Eigen::Index i = 0; i < form.metrics; ++i) {
+      std::getline(file, cell, i + 1 < form.metrics ? ',' : '\n');
+      row(i) = std::stod(cell);
+    }
+  }
+  return out;
 }
 
 /// Equal to 1e-9 of the expected value: what the results are asked to be good for.  Rounding of

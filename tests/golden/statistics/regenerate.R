@@ -60,10 +60,6 @@ say("")
 say("// One result a line:")
 say("// clang-format off")
 say("namespace stillhand::golden::statistics {")
-say("// The CSV files without their first three columns, one subject a line.")
-for (name in names(trials))
-  array(paste0("k", name), t(metrics_of(trials[[name]])), length(metrics_of(trials[[name]])) / max(trials[[name]]$subject))
-
 # t-tests: t.test; dz and its correction by their formulas, with R's log gamma.
 say("struct TTestRow {")
 say("  int set, first, second, metric; double confidence, mean, deviation, t, degrees, p, low, high, dz, gz;")
