@@ -124,6 +124,8 @@ void run_in_process(const Arguments& arguments) {
   };
   record.conditions = run_repeats(record.result, arguments.lab.protocol, rig, repeats);
   record.decision = decide(record.conditions, record.result);
+  progress.show("mend, cancel or leave", 0.99);
+  record.repairs = repair_list(record.result, record.options);
   progress.finish();
   if (record.undeclared_effect != 0) {
     rig::open_effect(folder.path(), session.open_effect(), kVerdictFile);
@@ -153,6 +155,7 @@ void run_live(const Arguments& arguments) {
   judge_cancellation(recording, live.outcomes, lab::answers_of(arguments.lab), record.result);
   record.conditions = own_trials(record.result);
   record.decision = decide(record.conditions, record.result);
+  record.repairs = repair_list(record.result, record.options);
   // The verdict is written before the truth is opened.
   if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
                                                            verdict_json(record.result.verdict()));

@@ -29,17 +29,6 @@ bool has_role(const Effect& effect) {
   return std::holds_alternative<Law>(diagnosis::effect_kind(effect.kind).body_role(effect));
 }
 
-// As the session continues it: a gain of time alone stays where it is at the end.
-Effect continued(const Effect& effect, const diagnosis::Signals& signals) {
-  if (!has_role<diagnosis::control::Gain>(effect)) return effect;
-  const double gain = gain_at_the_end(effect, signals);
-  return {"regime_change",
-          "step of the gain",
-          {},
-          {diagnosis::constant("time", "s", 0.0), diagnosis::constant("change", "-", gain - 1.0)},
-          {}};
-}
-
 // The denominator with the smallest error, or the first that is good; one that settles in time is
 // preferred where its error is allowed.
 ConvertedModel best_conversion(const Model& model, const diagnosis::Signals& signals,
@@ -69,7 +58,18 @@ bool has_a_part_in_the_body(const Effect& effect) {
          !diagnosis::effect_kind(effect.kind).time_only(effect);
 }
 
-// The body that was fitted next to other effects is not that of this model.  Bursts weigh here.
+}  // namespace
+
+Effect continued(const Effect& effect, const diagnosis::Signals& signals) {
+  if (!has_role<diagnosis::control::Gain>(effect)) return effect;
+  const double gain = gain_at_the_end(effect, signals);
+  return {"regime_change",
+          "step of the gain",
+          {},
+          {diagnosis::constant("time", "s", 0.0), diagnosis::constant("change", "-", gain - 1.0)},
+          {}};
+}
+
 Model fitted_again(Model model, const diagnosis::Signals& signals) {
   const diagnosis::Blocks blocks = diagnosis::make_blocks(signals);
   const auto order = static_cast<int>(model.body.order());
@@ -95,6 +95,8 @@ Model fitted_again(Model model, const diagnosis::Signals& signals) {
   }
   return best;
 }
+
+namespace {
 
 // Converts, compares, and converts again without what differs.
 class Export {

@@ -67,4 +67,10 @@ ConvertedModel to_control_model(const diagnosis::CarriedModel& carried,
                                 const diagnosis::Signals& signals,
                                 const ControlOptions& options = {});
 
+/// An effect as the session continues it: a gain of time alone stays where it is at the end.
+diagnosis::Effect continued(const diagnosis::Effect& effect, const diagnosis::Signals& signals);
+/// A model whose effects have changed, fitted: the body that was fitted next to other effects is
+/// not that of this model.  Bursts weigh here.
+diagnosis::Model fitted_again(diagnosis::Model model, const diagnosis::Signals& signals);
+
 }  // namespace stillhand::close_the_loop

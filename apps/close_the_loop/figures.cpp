@@ -5,6 +5,7 @@
 #include <ranges>
 
 #include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/repair/repair_output.hpp"
 #include "apps/libraries/measurement/grid.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/working_set.hpp"
@@ -210,8 +211,13 @@ report::Figure motion_figure(const LoopResult& result) {
 }  // namespace
 
 std::vector<report::Figure> loop_figures(const LoopRecord& record) {
-  return {tracking_figure(record), force_figure(record), adaptation_figure(record.result),
-          motion_figure(record.result)};
+  std::vector<report::Figure> figures{tracking_figure(record), force_figure(record),
+                                      adaptation_figure(record.result),
+                                      motion_figure(record.result)};
+  const bool any = std::ranges::any_of(record.repairs.effects,
+                                       [](const Worth& each) { return each.why_not.empty(); });
+  if (any) figures.push_back(repair_figure(record.repairs));
+  return figures;
 }
 
 }  // namespace stillhand::close_the_loop

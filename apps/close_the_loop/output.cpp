@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "apps/close_the_loop/repair/repair_output.hpp"
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/report/plot/figure_table.hpp"
 #include "apps/libraries/report/text.hpp"
@@ -247,6 +248,7 @@ std::string summary_json(const LoopRecord& record) {
   summary["kept"] = record.decision.kept();
   summary["decided_on"] = "motor";
   summary["decision"] = decision_json(record.decision);
+  summary["repair"] = repair_json(record.repairs);
   summary["least_force_n"] = result.verdict().body.options.least_force_n;
   summary["truth"] = nullptr;
   if (record.truth) {
@@ -317,7 +319,7 @@ std::vector<std::string> every_name() {
   std::vector<std::string> names{"report.html",       "summary.json",    kVerdictFile,
                                  "model.json",        kControlModelFile, rig::kSealedFile,
                                  rig::kCommitmentFile};
-  for (const char* figure : {"tracking", "force", "adaptation", "motion", "left"}) {
+  for (const char* figure : {"tracking", "force", "adaptation", "motion", "repair", "left"}) {
     for (std::string& name : report::figure_files(figure)) names.push_back(std::move(name));
   }
   return names;

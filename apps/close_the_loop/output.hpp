@@ -7,6 +7,7 @@
 
 #include "apps/close_the_loop/closed_loop.hpp"
 #include "apps/close_the_loop/conditions.hpp"
+#include "apps/close_the_loop/repair/repair.hpp"
 #include "apps/libraries/report/page.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
 
@@ -44,6 +45,7 @@ struct LoopRecord {
   LoopResult result;
   Conditions conditions;       ///< what tables and figures show
   LoopDecision decision;       ///< by the conditions: is C+ kept?
+  RepairList repairs;          ///< what each effect is worth; empty: none counts
   std::optional<Truth> truth;  ///< empty: nothing was sealed
 
   /// Verdict and truth agree: METHOD, "Right".

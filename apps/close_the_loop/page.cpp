@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The report: what the paper's model lacked, and how the hand tracks with each model.
 #include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/repair/repair_output.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
@@ -11,6 +12,8 @@ namespace {
 using report::Cell;
 using report::Emphasis;
 using report::number;
+
+constexpr std::size_t kRepairDrawing = 4;  // of loop_figures(), if there is anything to repair
 
 std::string percent(const Estimate& share) { return with_interval(share, 0, 100.0) + " %"; }
 
@@ -117,6 +120,18 @@ void add_verdict(report::Page& page, const LoopResult& result,
   }
 }
 
+void add_repairs(report::Page& page, const LoopRecord& record,
+                 const std::vector<report::Drawing>& drawings) {
+  if (record.repairs.effects.empty()) return;
+  page.section("Mend, cancel or leave");
+  page.table(repair_table(record.repairs));
+  if (drawings.size() > kRepairDrawing) page.figure(drawings.at(kRepairDrawing));
+  page.paragraph(
+      "Left: as in C'. Cancelled: by C+. Mended: the effect is gone, and the model of C' is "
+      "identified again. " +
+      repair_check(record.repairs));
+}
+
 void add_truth(report::Page& page, const LoopRecord& record) {
   if (!record.truth) return;
   const Truth& truth = *record.truth;
@@ -216,6 +231,7 @@ report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawi
   add_tracking(page, record.conditions, drawings);
   if (const auto causes = causes_table(result)) page.table(*causes);
   add_verdict(page, result, drawings);
+  add_repairs(page, record, drawings);
   page.section("The rounds");
   page.table(rounds_table(result));
   page.figure(drawings.at(2));

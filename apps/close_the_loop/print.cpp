@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/repair/repair_output.hpp"
 #include "apps/libraries/report/text.hpp"
 
 namespace stillhand::close_the_loop {
@@ -31,6 +32,10 @@ void print_result(const LoopRecord& record) {
       verdict.body.noise_floor.rmse);
   for (const Round& round : result.rounds) std::printf("C+: %s\n", round.outcome.c_str());
   if (const std::string kept = kept_text(record); !kept.empty()) fmt::print("{}\n", kept);
+  if (!record.repairs.effects.empty()) {
+    fmt::print("\n{}{}\n", report::in_plain_text(repair_table(record.repairs)),
+               repair_check(record.repairs));
+  }
   if (record.truth) {
     std::printf("the sealed truth: %s%s%s; the verdict is %s\n", record.truth->kind.c_str(),
                 record.truth->place.empty() ? "" : ", ", record.truth->place.c_str(),

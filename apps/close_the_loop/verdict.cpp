@@ -78,12 +78,17 @@ std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
 void add_drive_findings(Verdict& out) {
   for (const diagnosis::FoundEffect& effect : out.drive->effects) {
     out.findings.push_back(finding_of(effect, kDrive, "N"));
-    if (effect.counts && out.not_carried.empty())
-      add_drive_effect(effect.effect, kFrictionShare, out.control);
   }
+  if (out.not_carried.empty()) add_drive_effects(*out.drive, out.control);
 }
 
 }  // namespace
+
+void add_drive_effects(const diagnosis::Diagnosis& drive, ConvertedModel& to) {
+  for (const diagnosis::FoundEffect& effect : drive.effects) {
+    if (effect.counts) add_drive_effect(effect.effect, kFrictionShare, to);
+  }
+}
 
 diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std::string& output,
                                 double seconds) {

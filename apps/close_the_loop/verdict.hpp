@@ -87,6 +87,9 @@ struct Verdict {
 /// often as not (diagnosis, Eq. DG-62).
 double detectable_n(const Verdict& verdict, bool in_drive);
 
+/// What the canceller does about the drive's effects that count.
+void add_drive_effects(const diagnosis::Diagnosis& drive, ConvertedModel& to);
+
 /// A record with the output as if its sensor were not late; the last samples of a stretch then
 /// count as not measured.  @param seconds  [s] delay of the sensor
 diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std::string& output,

@@ -67,7 +67,13 @@ class CloseTheLoopTest(LoopCase):
         self.assertEqual(json.loads((self.out / "verdict.json").read_text()), summary["verdict"])
         report = (self.out / "report.html").read_text()
         self.assertIn("coupled_input", report)
-        self.assertEqual(report.count("<svg"), 4)
+        self.assertEqual(report.count("<svg"), 5)
+        (worth,) = summary["repair"]["effects"]
+        self.assertEqual((worth["kind"], worth["channel"], worth["why_not"]), ("coupled_input", "a_x", None))
+        for way in ("mended", "cancelled"):
+            low, high = worth["change_mm"][way]["interval95"]
+            self.assertTrue(low < worth["change_mm"][way]["mean"] < high < 0.0, way)
+        self.assertIn(worth["advice"], ("mend", "cancel"))
 
     def test_a_diagnosed_model_reaches_the_canceller_as_a_file(self):
         self.summary("--undeclared-effect", 9)

@@ -116,7 +116,8 @@ const diagnosis::Channel& channel_of(const diagnosis::Measurement& record,
   return *found;
 }
 
-// A channel of one stretch at 1 kHz.
+}  // namespace
+
 std::vector<double> at_control_rate(const std::vector<double>& values,
                                     const diagnosis::Stretch& stretch, double rate_hz) {
   const double factor = kControlRateHz / rate_hz;
@@ -131,7 +132,6 @@ std::vector<double> at_control_rate(const std::vector<double>& values,
   return out;
 }
 
-// Every channel that a model may read; those that the record lacks are 0.
 std::vector<cancellation::ChannelSample> sensed(const diagnosis::Measurement& record,
                                                 const diagnosis::Stretch& stretch) {
   std::vector<cancellation::ChannelSample> out;
@@ -144,6 +144,8 @@ std::vector<cancellation::ChannelSample> sensed(const diagnosis::Measurement& re
   }
   return out;
 }
+
+namespace {
 
 // Motor force at the hand, tick by tick, for the motion of a stretch.
 struct MotorRun {

@@ -54,6 +54,13 @@ Remaining left_by_motor(const cancellation::ControlModel& model,
                         const diagnosis::Measurement& record, const std::string& output,
                         double late_s = 0.0, double from_s = 0.0);
 
+/// A channel of one stretch at 1 kHz.
+std::vector<double> at_control_rate(const std::vector<double>& values,
+                                    const diagnosis::Stretch& stretch, double rate_hz);
+/// Every channel that a model may read, at 1 kHz; those that the record lacks are 0.
+std::vector<cancellation::ChannelSample> sensed(const diagnosis::Measurement& record,
+                                                const diagnosis::Stretch& stretch);
+
 /// [s] of each stretch that do not count: until the model has settled and faded in.
 double settled_after_s(const cancellation::ControlModel& model);
 
