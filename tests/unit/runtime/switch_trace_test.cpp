@@ -11,7 +11,7 @@
 namespace stillhand::runtime {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kMs_ns = 1'000'000;
 constexpr pid_t kThread = 40;
 
 std::string line(double at_s, const std::string& left, pid_t left_id, const std::string& state,
@@ -23,7 +23,7 @@ std::string line(double at_s, const std::string& left, pid_t left_id, const std:
 }
 
 /// The thread leaves at 1.000 s and is back at 1.070 s.
-std::string trace(const std::string& state) {
+std::string trace_of(const std::string& state) {
   return "# tracer: nop\n" + line(0.9, "swapper/1", 0, "R", "sensing", kThread) +
          line(1.0, "sensing", kThread, state, "cc1plus x", 7) +
          line(1.05, "cc1plus x", 7, "R+", "swapper/1", 0) +
@@ -32,53 +32,55 @@ std::string trace(const std::string& state) {
 }
 
 TEST(OccupationTest, SaysWhoHadTheProcessorWhileTheThreadWasAway) {
-  const Occupation sut = occupation(trace("R"), kThread, 999 * kMs, 1070 * kMs);
+  const Occupation sut = occupation(trace_of("R"), kThread, 999 * kMs_ns, 1070 * kMs_ns);
   EXPECT_EQ(sut.left_as, 'R');
   EXPECT_EQ(sut.program, "cc1plus x");
-  EXPECT_EQ(sut.had_ns, 50 * kMs);
-  EXPECT_EQ(sut.idle_ns, 10 * kMs);
+  EXPECT_EQ(sut.had_ns, 50 * kMs_ns);
+  EXPECT_EQ(sut.idle_ns, 10 * kMs_ns);
 }
 
 TEST(OccupationTest, CountsWhatLiesWithinTheTimeAlone) {
-  const Occupation sut = occupation(trace("R"), kThread, 1045 * kMs, 1055 * kMs);
-  EXPECT_EQ(sut.had_ns, 5 * kMs);
-  EXPECT_EQ(sut.idle_ns, 5 * kMs);
+  const Occupation sut = occupation(trace_of("R"), kThread, 1045 * kMs_ns, 1055 * kMs_ns);
+  EXPECT_EQ(sut.had_ns, 5 * kMs_ns);
+  EXPECT_EQ(sut.idle_ns, 5 * kMs_ns);
 }
 
 TEST(OccupationTest, KnowsNothingFromATraceThatDoesNotReach) {
-  EXPECT_EQ(occupation("", kThread, 0, kMs).program, "");
-  EXPECT_EQ(occupation("12.5: sched_switch:\n: sched_switch: x", kThread, 0, kMs).left_as, 0);
-  const Occupation later = occupation(trace("R"), kThread, 0, 500 * kMs);
+  EXPECT_EQ(occupation("", kThread, 0, kMs_ns).program, "");
+  EXPECT_EQ(occupation("12.5: sched_switch:\n: sched_switch: x", kThread, 0, kMs_ns).left_as, 0);
+  const Occupation later = occupation(trace_of("R"), kThread, 0, 500 * kMs_ns);
   EXPECT_EQ(later.program, "");
   EXPECT_EQ(later.idle_ns, 0);
 }
 
 /// Of a silence from 1.000 to 1.070 s in which the thread waited for a processor, or did not.
-std::string why(const std::string& text, std::int64_t waited_ms) {
-  return why_silent(1000 * kMs, 1070 * kMs, {}, {900 * kMs, 0, 0, 0, 0},
-                    {1100 * kMs, 0, waited_ms * kMs, 0, 0},
-                    occupation(text, kThread, 1000 * kMs, 1070 * kMs));
+std::string why_switched(const std::string& text, std::int64_t waited_ms) {
+  return why_silent(1000 * kMs_ns, 1070 * kMs_ns, {}, {900 * kMs_ns, 0, 0, 0, 0},
+                    {1100 * kMs_ns, 0, waited_ms * kMs_ns, 0, 0},
+                    occupation(text, kThread, 1000 * kMs_ns, 1070 * kMs_ns));
 }
 
 TEST(OccupationTest, CompletesTheReason) {
-  EXPECT_EQ(why(trace("R"), 70), "waited 70 ms for a processor; cc1plus x had it for 50 ms");
-  EXPECT_EQ(why(line(1.0, "sensing", kThread, "R", "swapper/1", 0), 70),
+  EXPECT_EQ(why_switched(trace_of("R"), 70),
+            "waited 70 ms for a processor; cc1plus x had it for 50 ms");
+  EXPECT_EQ(why_switched(line(1.0, "sensing", kThread, "R", "swapper/1", 0), 70),
             "waited 70 ms for a processor; it was idle: held back, as by its group's quota of "
             "processor time");
-  EXPECT_EQ(why("", 70), "waited 70 ms for a processor");
-  EXPECT_EQ(why(trace("T"), 0), "stopped by a signal");
-  EXPECT_EQ(why(trace("t"), 0), "stopped by a debugger");
-  EXPECT_EQ(why(trace("D"), 0), "blocked in the kernel, as by a disk or its group's freezer");
-  EXPECT_EQ(why(trace("R"), 5), "held back, as by its group's quota of processor time");
-  EXPECT_EQ(why(trace("R"), 30), "");
-  EXPECT_EQ(why(trace("S"), 0), "");
+  EXPECT_EQ(why_switched("", 70), "waited 70 ms for a processor");
+  EXPECT_EQ(why_switched(trace_of("T"), 0), "stopped by a signal");
+  EXPECT_EQ(why_switched(trace_of("t"), 0), "stopped by a debugger");
+  EXPECT_EQ(why_switched(trace_of("D"), 0),
+            "blocked in the kernel, as by a disk or its group's freezer");
+  EXPECT_EQ(why_switched(trace_of("R"), 5), "held back, as by its group's quota of processor time");
+  EXPECT_EQ(why_switched(trace_of("R"), 30), "");
+  EXPECT_EQ(why_switched(trace_of("S"), 0), "");
 }
 
 TEST(SwitchTraceTest, WithoutRightsIsNotAvailableAndLeavesNothing) {
   const support::Folder folder;
   const SwitchTrace sut(folder / "absent");
   EXPECT_FALSE(sut.available());
-  EXPECT_EQ(sut.of(0, kThread, 0, kMs).program, "");
+  EXPECT_EQ(sut.of(0, kThread, 0, kMs_ns).program, "");
 }
 
 }  // namespace
