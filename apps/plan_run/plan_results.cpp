@@ -30,6 +30,7 @@ double chance_between(const next_run::Plan& plan, std::size_t i, std::size_t j) 
 }
 
 ordered_json pairs_json(const Planned& planned) {
+  const next_run::Expected& expected = planned.plan.expected;
   ordered_json pairs = ordered_json::array();
   for (std::size_t i = 0; i < count_of(planned); ++i) {
     for (std::size_t j = 0; j < count_of(planned); ++j) {
@@ -39,7 +40,8 @@ ordered_json pairs_json(const Planned& planned) {
       pairs.push_back({{"true", i},
                        {"rival", j},
                        {"evidence_now", planned.contest.before().twice_log_ratio(row, column)},
-                       {"evidence_expected", planned.plan.separation(row, column)},
+                       {"evidence_expected", expected.separation(row, column) +
+                                                 expected.price[column] - expected.price[row]},
                        {"probability_settled", planned.plan.chance(row, column)}});
     }
   }

@@ -141,16 +141,16 @@ int run(const Options& options) {
                 best.design.high_hz, best.design.level, best.design.quiet, best.probability_settled,
                 best.probability_repeated);
     std::printf("    evidence for the first, before: ");
-    for (Eigen::Index j = 1; j < best.separation.rows(); ++j) {
+    for (Eigen::Index j = 1; j < best.expected.separation.rows(); ++j) {
       std::printf(" %.1f +- %.1f", contest.before().twice_log_ratio(0, j),
                   contest.before().standard_error(0, j));
     }
     std::printf("; separation");
-    for (Eigen::Index j = 1; j < best.separation.rows(); ++j) {
-      std::printf(" %.1f/%.1f", best.separation(0, j), best.separation(j, 0));
+    for (Eigen::Index j = 1; j < best.expected.separation.rows(); ++j) {
+      std::printf(" %.1f/%.1f", best.expected.separation(0, j), best.expected.separation(j, 0));
     }
     std::printf("; after");
-    for (Eigen::Index j = 1; j < best.separation.rows(); ++j) {
+    for (Eigen::Index j = 1; j < best.expected.separation.rows(); ++j) {
       std::printf(" %.1f +- %.1f", after.twice_log_ratio(0, j), after.standard_error(0, j));
     }
     std::printf("\n");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/fitting/fit.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
@@ -90,31 +91,38 @@ double variance_of_sum(const std::vector<double>& sums) {
 
 double phi(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
-Evidence no_evidence(Index count) {
-  const MatrixXd none = MatrixXd::Zero(count, count);
-  return {none, none, none};
+// Of a sum over one recording.
+double error_of_sum(const VectorXd& values, const Signals& signals) {
+  return std::sqrt(variance_of_sum(block_sums(values, signals)));
 }
 
-// Errors of each candidate over one recording into the evidence.
-// @param residuals  of the candidates, and of the model without any of the causes
-void add(const std::vector<VectorXd>& residuals, const Signals& signals, double variance,
-         Evidence& evidence) {
-  for (std::size_t i = 0; i + 1 < residuals.size(); ++i) {
-    const double gain = (residuals.back().squaredNorm() - residuals[i].squaredNorm()) / variance;
-    for (std::size_t j = 0; j + 1 < residuals.size(); ++j) {
+// ln det(I + S), S being the information in units of `of_a_sample`.
+double price_of(const MatrixXd& information, const VectorXd& of_a_sample) {
+  const VectorXd scale =
+      of_a_sample.unaryExpr([](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
+      scale.asDiagonal() * information * scale.asDiagonal(), Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues().unaryExpr([](double x) { return std::log1p(std::max(x, 0.0)); }).sum();
+}
+
+double count_of(const Signals& signals) {
+  double samples = 0.0;
+  for (const double weight : signals.weight()) samples += weight;
+  return samples;
+}
+
+// Errors and prices of each candidate over one recording into the evidence.
+void add(const std::vector<VectorXd>& residuals, const std::vector<double>& prices,
+         const Signals& signals, double variance, Evidence& evidence) {
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    for (std::size_t j = 0; j < residuals.size(); ++j) {
       if (i == j) continue;
       const VectorXd difference =
           (residuals[j].array().square() - residuals[i].array().square()) / variance;
-      const auto row = static_cast<Index>(i);
-      const auto column = static_cast<Index>(j);
-      const double more = difference.sum();
-      const double error = std::sqrt(variance_of_sum(block_sums(difference, signals)));
-      evidence.twice_log_ratio(row, column) += more;
-      evidence.standard_error(row, column) =
-          std::hypot(evidence.standard_error(row, column), error);
-      if (more >= std::max({kStrong, kStandardErrors * error, (1.0 - kTiedGain) * gain})) {
-        evidence.distinct(row, column) = 1.0;
-      }
+      double& error = evidence.standard_error(static_cast<Index>(i), static_cast<Index>(j));
+      error = std::hypot(error, error_of_sum(difference, signals));
+      evidence.twice_log_ratio(static_cast<Index>(i), static_cast<Index>(j)) +=
+          difference.sum() + prices[j] - prices[i];
     }
   }
 }
@@ -122,8 +130,7 @@ void add(const std::vector<VectorXd>& residuals, const Signals& signals, double 
 }  // namespace
 
 bool Evidence::settled(Index i, Index j) const {
-  return distinct(i, j) > 0.0 &&
-         twice_log_ratio(i, j) >= std::max(kStrong, kStandardErrors * standard_error(i, j));
+  return twice_log_ratio(i, j) >= std::max(kStrong, kStandardErrors * standard_error(i, j));
 }
 
 Index Evidence::winner() const {
@@ -158,36 +165,30 @@ Contest::Contest(std::vector<Candidate> candidates, const Signals& signals)
 // Eq. NR-2.
 void Contest::weigh(const Signals& judged) {
   const auto count = static_cast<Index>(candidates_.size());
+  const double samples = count_of(judged);
   const diagnosis::Blocks blocks = diagnosis::make_blocks(judged);
-  for (const Candidate& candidate : candidates_) models_.push_back(candidate.model);
-  models_.push_back(models_.front());
-  models_.back().effects.erase(models_.back().effects.begin() +
-                               static_cast<std::ptrdiff_t>(candidates_.front().effect));
   std::vector<VectorXd> residuals;
-  double samples = 0.0;
-  for (const double weight : judged.weight()) samples += weight;
   variance_ = std::numeric_limits<double>::infinity();
-  for (Model& model : models_) {
-    diagnosis::fit(model, judged, blocks);
-    const diagnosis::Linearisation line = diagnosis::linearised(model, judged);
+  for (Candidate& candidate : candidates_) {
+    diagnosis::fit(candidate.model, judged, blocks);
+    const diagnosis::Linearisation line = diagnosis::linearised(candidate.model, judged);
+    if (!line.finite) {
+      throw ConfigError("candidate " + name_of(candidate), "a run that is not finite",
+                        "a model that was fitted to the recording");
+    }
     variance_ = std::min(variance_, line.residual.squaredNorm() / samples);
     information_.push_back(line.jacobian.transpose() * line.jacobian);
     residuals.push_back(line.residual);
   }
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    information_[i] = without(information_[i] / variance_, own_numbers(models_[i]));
-  }
-  before_ = no_evidence(count);
-  add(residuals, judged, variance_, before_);
+  std::vector<double> prices;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    candidates_[i].model = models_[i];
-    for (std::size_t j = 0; j < candidates_.size(); ++j) {
-      before_.twice_log_ratio(static_cast<Index>(i), static_cast<Index>(j)) +=
-          (static_cast<double>(complexity(models_[j])) -
-           static_cast<double>(complexity(models_[i]))) *
-          std::log(samples);
-    }
+    information_[i] /= variance_;
+    of_a_sample_.push_back(information_[i].diagonal() / samples);
+    prices.push_back(price_of(information_[i], of_a_sample_[i]));
+    information_[i] = without(information_[i], own_numbers(candidates_[i].model));
   }
+  before_ = {MatrixXd::Zero(count, count), MatrixXd::Zero(count, count)};
+  add(residuals, prices, judged, variance_, before_);
 }
 
 std::vector<Candidate> Contest::still_tied() const {
@@ -206,7 +207,7 @@ std::vector<double> Contest::prediction(std::size_t i, const Measurement& run) c
 
 // Eq. NR-3, by Levenberg and Marquardt.
 Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) const {
-  Model model = models_[j];
+  Model model = candidates_[j].model;
   const VectorXd start = diagnosis::packed(model);
   const MatrixXd& information = information_[j];
   const auto known = [&](const Model& at) {
@@ -214,8 +215,15 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
     return moved.dot(information * moved);
   };
   diagnosis::Linearisation line = diagnosis::linearised(model, run);
-  if (!line.finite) return {kNeverFits, 0.0, VectorXd::Zero(static_cast<Index>(run.size()))};
-  Refit best{line.residual.squaredNorm() / variance_, 0.0, line.residual};
+  if (!line.finite) {
+    const auto size = static_cast<Index>(run.size());
+    const double each = std::sqrt(kNeverFits * variance_ / static_cast<double>(size));
+    return {kNeverFits, 0.0, 0.0, VectorXd::Constant(size, each)};
+  }
+  const MatrixXd more = line.jacobian.transpose() * line.jacobian / variance_;
+  const double price =
+      price_of(information + more, of_a_sample_[j]) - price_of(information, of_a_sample_[j]);
+  Refit best{line.residual.squaredNorm() / variance_, 0.0, price, line.residual};
   for (int step = 0;; ++step) {
     const VectorXd numbers = diagnosis::packed(model);
     const VectorXd downhill =
@@ -224,6 +232,7 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
     const VectorXd way = inverse(squares) * downhill;
     if (steps == 0) {
       best.cost -= way.dot(downhill);
+      best.residual -= line.jacobian * way;
       return best;
     }
     bool better = false;
@@ -240,7 +249,7 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
       const double cost = residual.squaredNorm() / variance_ + known(next);
       better = cost < best.cost;
       if (better) {
-        best = {cost, known(next), residual};
+        best = {cost, known(next), price, residual};
         model = std::move(next);
       }
     }
@@ -250,26 +259,35 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
 }
 
 std::optional<Signals> Contest::as_predicted(std::size_t i, const Measurement& run) const {
-  const diagnosis::FreeRun free = diagnosis::free_run(models_[i], signals_of(run));
+  const diagnosis::FreeRun free = diagnosis::free_run(candidates_[i].model, signals_of(run));
   if (!free.finite) return std::nullopt;
   Measurement predicted = run;
   for (diagnosis::Channel& channel : predicted.channels) {
-    if (channel.name == models_[i].output) channel.values = free.prediction;
+    if (channel.name == candidates_[i].model.output) channel.values = free.prediction;
   }
   return signals_of(predicted).whitened(taps_);
 }
 
-MatrixXd Contest::separation(const Measurement& run, int steps) const {
+Expected Contest::expected(const Measurement& run, int steps) const {
   const auto count = static_cast<Index>(candidates_.size());
-  MatrixXd apart = MatrixXd::Zero(count, count + 1);
+  Expected expected{MatrixXd::Zero(count, count), MatrixXd::Zero(count, count),
+                    VectorXd::Zero(count)};
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const std::optional<Signals> judged = as_predicted(i, run);
-    for (std::size_t j = 0; judged && j < models_.size(); ++j) {
+    for (std::size_t j = 0; judged && j < candidates_.size(); ++j) {
+      const auto row = static_cast<Index>(i);
+      const auto column = static_cast<Index>(j);
+      const Refit refit = refitted(j, *judged, i == j ? 0 : steps);
+      expected.price[column] = refit.price;
       if (i == j) continue;
-      apart(static_cast<Index>(i), static_cast<Index>(j)) = refitted(j, *judged, steps).cost;
+      const VectorXd squares = refit.residual.array().square() / variance_;
+      expected.separation(row, column) = refit.cost;
+      // The scatter of what is left, and of its product with the noise.
+      expected.standard_error(row, column) =
+          std::hypot(error_of_sum(squares, *judged), 2.0 * std::sqrt(squares.sum()));
     }
   }
-  return apart;
+  return expected;
 }
 
 VectorXd Contest::unmatched(std::size_t i, std::size_t j, const Measurement& run, int steps) const {
@@ -278,34 +296,32 @@ VectorXd Contest::unmatched(std::size_t i, std::size_t j, const Measurement& run
   return refitted(j, *judged, steps).residual;
 }
 
-MatrixXd Contest::margin(const MatrixXd& separation) const {
-  const Index count = separation.rows();
+MatrixXd Contest::margin(const Expected& expected) const {
+  const Index count = expected.separation.rows();
   MatrixXd margins = MatrixXd::Zero(count, count);
   for (Index i = 0; i < count; ++i) {
     for (Index j = 0; j < count; ++j) {
       if (i == j) continue;
-      const double apart = std::max(separation(i, j), 1e-9);
-      const double spread = 2.0 * std::sqrt(apart);
-      const double in_all =
-          std::max(kStrong, kStandardErrors * std::hypot(spread, before_.standard_error(i, j))) -
-          before_.twice_log_ratio(i, j);
-      const double in_run =
-          std::max({kStrong, kStandardErrors * spread, (1.0 - kTiedGain) * separation(i, count)});
-      const bool shown = before_.distinct(i, j) > 0.0;
-      margins(i, j) = (apart - (shown ? in_all : std::max(in_all, in_run))) / spread;
+      const double apart = std::max(expected.separation(i, j), 1e-9);
+      const double wanted =
+          std::max(kStrong, kStandardErrors * std::hypot(expected.standard_error(i, j),
+                                                         before_.standard_error(i, j)));
+      const double evidence =
+          before_.twice_log_ratio(i, j) + apart + expected.price[j] - expected.price[i];
+      margins(i, j) = (evidence - wanted) / (2.0 * std::sqrt(apart));
     }
   }
   return margins;
 }
 
-MatrixXd Contest::chance(const MatrixXd& separation) const {
-  MatrixXd chances = margin(separation).unaryExpr([](double z) { return phi(z); });
+MatrixXd Contest::chance(const Expected& expected) const {
+  MatrixXd chances = margin(expected).unaryExpr([](double z) { return phi(z); });
   chances.diagonal().setZero();
   return chances;
 }
 
-double Contest::probability_settled(const MatrixXd& separation) const {
-  const MatrixXd chances = chance(separation);
+double Contest::probability_settled(const Expected& expected) const {
+  const MatrixXd chances = chance(expected);
   const auto count = chances.rows();
   double sum = 0.0;
   for (Index i = 0; i < count; ++i) {
@@ -320,24 +336,18 @@ double Contest::probability_settled(const MatrixXd& separation) const {
 Evidence Contest::with(const Measurement& run) const {
   constexpr int kSteps = 20;
   const Signals judged = signals_of(run).whitened(taps_);
-  double samples = 0.0;
-  for (const double weight : judged.weight()) samples += weight;
+  const double samples = count_of(judged);
   std::vector<VectorXd> residuals;
-  std::vector<double> known;
+  std::vector<double> prices;
   double variance = std::numeric_limits<double>::infinity();
-  for (std::size_t j = 0; j < models_.size(); ++j) {
+  for (std::size_t j = 0; j < candidates_.size(); ++j) {
     Refit refit = refitted(j, judged, kSteps);
     variance = std::min(variance, refit.cost * variance_ / samples);
-    known.push_back(refit.known);
+    prices.push_back(refit.price + refit.known);
     residuals.push_back(std::move(refit.residual));
   }
   Evidence evidence = before_;
-  add(residuals, judged, std::max(variance, variance_), evidence);
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    for (std::size_t j = 0; j < candidates_.size(); ++j) {
-      evidence.twice_log_ratio(static_cast<Index>(i), static_cast<Index>(j)) += known[j] - known[i];
-    }
-  }
+  add(residuals, prices, judged, std::max(variance, variance_), evidence);
   return evidence;
 }
 

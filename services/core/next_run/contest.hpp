@@ -13,14 +13,11 @@ namespace stillhand::next_run {
 /// By how much the evidence has to exceed chance before a tie counts as broken, Eq. NR-5.
 inline constexpr double kStrong = 6.0;          ///< [-] twice a log ratio; Kass and Raftery, 1995
 inline constexpr double kStandardErrors = 2.0;  ///< as in the choice of a name, Eq. DG-17
-/// [-] of what a cause explains: a rival that explains all but this is tied with it, Eq. DG-17.
-inline constexpr double kTiedGain = diagnosis::SearchOptions{}.tied_gain;
 
 /// Evidence for candidate i (row) against j (column), Eq. NR-2 and NR-4.
 struct Evidence {
   Eigen::MatrixXd twice_log_ratio;  ///< [-] positive: i explains more
   Eigen::MatrixXd standard_error;   ///< [-] over blocks of 2 s
-  Eigen::MatrixXd distinct;  ///< 1: the recording or the run shows it by itself, Eq. NR-5; 0: none
 
   /// Eq. NR-5.
   [[nodiscard]] bool settled(Eigen::Index i, Eigen::Index j) const;
@@ -30,11 +27,20 @@ struct Evidence {
   [[nodiscard]] std::vector<Eigen::Index> left() const;
 };
 
+/// What a run is expected to add to the evidence, Eq. NR-3: i is true (row), j is fitted to its
+/// prediction (column).
+struct Expected {
+  Eigen::MatrixXd separation;      ///< [-] noncentrality
+  Eigen::MatrixXd standard_error;  ///< [-] over blocks of 2 s
+  Eigen::VectorXd price;           ///< [-] that each candidate pays for its numbers in the run
+};
+
 /// Candidates against each other: what a recording says, what a further run can say, and what it
 /// said.  README Eq. NR-2 to NR-6.  Pure; const functions from any thread.
 class Contest {
  public:
   /// @param signals  of the recording to which the candidates were fitted
+  /// @throws stillhand::ConfigError where the run of one is not finite
   Contest(std::vector<Candidate> candidates, const diagnosis::Signals& signals);
 
   [[nodiscard]] const std::vector<Candidate>& candidates() const noexcept { return candidates_; }
@@ -53,20 +59,18 @@ class Contest {
   /// @param run  its channels; the output counts for nothing
   [[nodiscard]] std::vector<double> prediction(std::size_t i,
                                                const diagnosis::Measurement& run) const;
-  /// Noncentrality of each pair, Eq. NR-3: i is true (row), j is fitted to it (column); the last
-  /// column is the model without the cause.
   /// @param steps  of the refit; 0: by one linearisation
-  [[nodiscard]] Eigen::MatrixXd separation(const diagnosis::Measurement& run, int steps) const;
+  [[nodiscard]] Expected expected(const diagnosis::Measurement& run, int steps) const;
   /// [unit of the output] What the second leaves of the first one's prediction, fitted to it as in
   /// Eq. NR-3, behind the noise model.
   [[nodiscard]] Eigen::VectorXd unmatched(std::size_t i, std::size_t j,
                                           const diagnosis::Measurement& run, int steps) const;
-  /// By how many deviations a run of that separation is expected to break each tie, i being true.
-  [[nodiscard]] Eigen::MatrixXd margin(const Eigen::MatrixXd& separation) const;
+  /// By how many deviations such a run is expected to break each tie, i being true.
+  [[nodiscard]] Eigen::MatrixXd margin(const Expected& expected) const;
   /// The probability that it does, Eq. NR-6.
-  [[nodiscard]] Eigen::MatrixXd chance(const Eigen::MatrixXd& separation) const;
+  [[nodiscard]] Eigen::MatrixXd chance(const Expected& expected) const;
   /// Eq. NR-7.
-  [[nodiscard]] double probability_settled(const Eigen::MatrixXd& separation) const;
+  [[nodiscard]] double probability_settled(const Expected& expected) const;
 
   /// Evidence of the recording and of a run that was made since.
   [[nodiscard]] Evidence with(const diagnosis::Measurement& run) const;
@@ -75,6 +79,7 @@ class Contest {
   struct Refit {
     double cost = 0.0;         // [-] Eq. NR-3; of noise of variance 1
     double known = 0.0;        // [-] the part of it that the recording's knowledge adds
+    double price = 0.0;        // [-] of the numbers in the run, Eq. NR-4
     Eigen::VectorXd residual;  // [unit of the output] behind the noise model
   };
   [[nodiscard]] diagnosis::Signals signals_of(const diagnosis::Measurement& run) const;
@@ -86,11 +91,11 @@ class Contest {
   void weigh(const diagnosis::Signals& judged);
 
   std::vector<Candidate> candidates_;
-  std::vector<diagnosis::Model> models_;  // of the candidates, and without any of the causes
   std::vector<std::string> inputs_;
   std::pair<double, double> band_hz_;
   std::vector<double> taps_;                  // Eq. DG-61
   std::vector<Eigen::MatrixXd> information_;  // of each candidate's numbers, noise of variance 1
+  std::vector<Eigen::VectorXd> of_a_sample_;  // of each number by itself, one sample's share
   double variance_ = 1.0;                     // of the whitened noise
   Evidence before_;
 };

@@ -240,9 +240,9 @@ std::vector<Tried> tried(const std::vector<Design>& designs, const Contest& cont
     try {
       const Ride ride = played(designs[d], loudest[d], bounds);
       const Measurement run = run_of(ride.motion, recorded, model.inputs.front(), model.output);
-      const MatrixXd separation = contest.separation(run, 0);
-      all[d].margin = contest.margin(separation);
-      all[d].settled = contest.probability_settled(separation);
+      const Expected expected = contest.expected(run, 0);
+      all[d].margin = contest.margin(expected);
+      all[d].settled = contest.probability_settled(expected);
       all[d].reach = reach_of(contest, run);
     } catch (const ConfigError&) {
       all[d].margin = {};
@@ -365,11 +365,11 @@ Plan best_plan(const Contest& contest, const Measurement& recorded, const Bounds
   plan.tried = all.size();
   plan.ride = ride_of(plan.design, bounds);
   plan.run = run_of(plan.ride.motion, recorded, model.inputs.front(), model.output);
-  plan.separation = contest.separation(plan.run, kSteps);
-  plan.chance = contest.chance(plan.separation);
-  plan.probability_settled = contest.probability_settled(plan.separation);
+  plan.expected = contest.expected(plan.run, kSteps);
+  plan.chance = contest.chance(plan.expected);
+  plan.probability_settled = contest.probability_settled(plan.expected);
   plan.probability_repeated = contest.probability_settled(
-      contest.separation(repeated(plan.run, recorded, model.inputs.front()), kSteps));
+      contest.expected(repeated(plan.run, recorded, model.inputs.front()), kSteps));
   return plan;
 }
 

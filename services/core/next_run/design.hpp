@@ -56,7 +56,7 @@ struct Plan {
   Design design;
   Ride ride;
   diagnosis::Measurement run;       ///< as run_of()
-  Eigen::MatrixXd separation;       ///< Eq. NR-3, refitted
+  Expected expected;                ///< Eq. NR-3, refitted
   Eigen::MatrixXd chance;           ///< Eq. NR-6
   double probability_settled = 0;   ///< Eq. NR-7
   double probability_repeated = 0;  ///< the same of the recorded motion, for as long

@@ -38,5 +38,13 @@ TEST(BrokenTieTest, ARunWithoutAChannelIsRefused) {
   EXPECT_THROW(static_cast<void>(broken_tie(kPlan, made::measured(3300, 4, 1), run)), ConfigError);
 }
 
+TEST(BrokenTieTest, APlanWhoseCandidatesAreNotFiniteIsRefused) {
+  next_run::PlanFile plan = kPlan;
+  for (auto& candidate : plan.candidates) candidate.model.body.numerators = {{1e200}};
+  EXPECT_THROW(
+      static_cast<void>(broken_tie(plan, made::measured(3300, 4, 1), made::measured(2100, 8, 2))),
+      ConfigError);
+}
+
 }  // namespace
 }  // namespace stillhand::diagnose

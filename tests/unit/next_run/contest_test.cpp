@@ -29,27 +29,36 @@ TEST(ContestTest, TheRivalIsFittedToBothRuns) {
   const double expected = c * c * (2000.0 + 2000.0 * 3200.0 / 5200.0);
   const auto run = made::measured(2100, 8, 2);
   // The edge of the first second is a sample of 2000.
-  EXPECT_NEAR(sut.separation(run, 0)(0, 1), expected, 0.002 * expected);
-  EXPECT_NEAR(sut.separation(run, 5)(0, 1), expected, 0.002 * expected);
+  EXPECT_NEAR(sut.expected(run, 0).separation(0, 1), expected, 0.002 * expected);
+  EXPECT_NEAR(sut.expected(run, 5).separation(0, 1), expected, 0.002 * expected);
+  // All blocks are alike: the scatter is that of the noise alone, but for the edge.
+  const double error =
+      2.0 * std::sqrt(c * c * (2000.0 + 2000.0 * 3200.0 / 5200.0 * 3200.0 / 5200.0));
+  EXPECT_LT(sut.expected(run, 0).standard_error(0, 1), 1.5 * error);
+  // Both have as many numbers, as well determined.
+  EXPECT_NEAR(sut.expected(run, 0).price[0], sut.expected(run, 0).price[1], 1e-6);
 }
 
 TEST(ContestTest, ARunThatRepeatsTheTieSeparatesNothing) {
-  EXPECT_NEAR(made::tied().separation(made::measured(2100, 4, 2), 5)(0, 1), 0.0, 1e-6);
+  EXPECT_NEAR(made::tied().expected(made::measured(2100, 4, 2), 5).separation(0, 1), 0.0, 1e-6);
 }
 
 // Eq. NR-6: Phi((36 - 2 x 12)/12) = Phi(1), and Phi((1 - 6)/2) = Phi(-2.5).
 TEST(ContestTest, TheChanceIsThatOfANoncentralRatio) {
   const Contest sut = made::tied();
-  Eigen::MatrixXd separation = Eigen::MatrixXd::Zero(2, 3);
-  separation(0, 1) = 36.0;
-  separation(1, 0) = 1.0;
-  const Eigen::MatrixXd chance = sut.chance(separation);
-  EXPECT_NEAR(chance(0, 1), 0.8413, 1e-3);
-  EXPECT_NEAR(chance(1, 0), 0.0062, 1e-3);
-  EXPECT_NEAR(sut.probability_settled(separation), 0.5 * (0.8413 + 0.0062), 1e-3);
-  // A rival that explains all but 5 % of what the cause does is tied: Phi((36 - 50)/12).
-  separation(0, 2) = 1000.0;
-  EXPECT_NEAR(sut.chance(separation)(0, 1), 0.1217, 1e-3);
+  Expected expected{Eigen::MatrixXd::Zero(2, 2), Eigen::MatrixXd::Zero(2, 2),
+                    Eigen::VectorXd::Zero(2)};
+  expected.separation << 0.0, 36.0, 1.0, 0.0;
+  expected.standard_error << 0.0, 12.0, 2.0, 0.0;
+  EXPECT_NEAR(sut.chance(expected)(0, 1), 0.8413, 1e-3);
+  EXPECT_NEAR(sut.chance(expected)(1, 0), 0.0062, 1e-3);
+  EXPECT_NEAR(sut.probability_settled(expected), 0.5 * (0.8413 + 0.0062), 1e-3);
+  // Evidence from few blocks has a larger scatter: Phi((36 - 2 x 20)/12).
+  expected.standard_error(0, 1) = 20.0;
+  EXPECT_NEAR(sut.chance(expected)(0, 1), 0.3694, 1e-3);
+  // What the rival pays for its numbers in the run counts: Phi((36 + 16 - 40)/12).
+  expected.price[1] = 16.0;
+  EXPECT_NEAR(sut.chance(expected)(0, 1), 0.8413, 1e-3);
 }
 
 TEST(ContestTest, ARunInWhichTheyDifferLeavesTheTrueOne) {
@@ -58,13 +67,27 @@ TEST(ContestTest, ARunInWhichTheyDifferLeavesTheTrueOne) {
   EXPECT_EQ(after.winner(), 0);
   EXPECT_THAT(after.left(), ElementsAre(0));
   // As expected, to four deviations of 2 sqrt(separation).
-  const double expected = sut.separation(made::measured(2100, 8, 2), 5)(0, 1);
+  const double expected = sut.expected(made::measured(2100, 8, 2), 5).separation(0, 1);
   EXPECT_NEAR(after.twice_log_ratio(0, 1), expected, 8.0 * std::sqrt(expected));
 }
 
 TEST(ContestTest, ARepetitionLeavesBoth) {
   const Contest sut = made::tied();
   EXPECT_THAT(sut.with(made::measured(2100, 4, 2)).left(), ElementsAre(0, 1));
+}
+
+// Eq. NR-2: a number that another one of the same model does already costs nothing, one of its own
+// ln(1 + N).
+TEST(ContestTest, ANumberThatTheRecordingDoesNotDetermineCostsNothing) {
+  const auto recording = made::measured(3300, 8, 1);
+  const auto evidence_against = [&](const char* second) {
+    Candidate richer = made::candidate("x");
+    richer.model.effects.push_back({"coupled_input", "static", {second}, {}, {0.0}});
+    const Contest sut({made::candidate("x"), richer}, diagnosis::Signals(recording, {"u"}, "y"));
+    return sut.before().twice_log_ratio(0, 1);
+  };
+  EXPECT_NEAR(evidence_against("x"), std::log(2.0), 0.1);
+  EXPECT_NEAR(evidence_against("z"), std::log(3200.0), 4.0);  // what noise explains: chi^2 of 1
 }
 
 // Two candidates of one channel, one of them with a factor that the recording does not support.
