@@ -18,6 +18,7 @@
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
+#include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/result_files.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
 #include "apps/libraries/report/text.hpp"
@@ -26,6 +27,7 @@
 #include "services/core/diagnosis/diagnose.hpp"
 #include "services/core/diagnosis/verdict_stability.hpp"
 #include "services/files/diagnosis/model_file.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/system/process/run_jobs.hpp"
 #include "services/system/process/stop.hpp"
@@ -57,6 +59,22 @@ void check_different(const std::vector<std::string>& recordings) {
   }
 }
 
+// The candidates were fitted to certain recordings, and the evidence counts for no others.
+void check_plan_is_of(const std::filesystem::path& plan, const std::vector<std::string>& before) {
+  const auto provenance = report::provenance_in(recording::read_file(plan.string()));
+  const auto digests_of = [](const std::vector<report::SourceFile>& files) {
+    std::vector<std::string> digests;
+    for (const report::SourceFile& file : files) digests.push_back(file.sha256);
+    std::ranges::sort(digests);
+    return digests;
+  };
+  const auto given = report::provenance_of_this_call({before.begin(), before.end()});
+  if (!provenance || digests_of(provenance->sources) != digests_of(given.sources)) {
+    throw ConfigError("--plan", plan.string() + ", a plan of other recordings",
+                      "the recordings that it was made from, unchanged, before its run");
+  }
+}
+
 // The last recording is the run of the plan.
 std::optional<BrokenTie> tie_of(const Arguments& arguments,
                                 std::vector<diagnosis::Measurement> parts) {
@@ -65,6 +83,7 @@ std::optional<BrokenTie> tie_of(const Arguments& arguments,
     throw ConfigError("--plan", "one recording with it",
                       "the recordings that left the tie, and then the run of the plan");
   }
+  check_plan_is_of(arguments.plan, {arguments.recordings.begin(), arguments.recordings.end() - 1});
   const diagnosis::Measurement run = std::move(parts.back());
   parts.pop_back();
   return broken_tie(next_run::read_plan(arguments.plan), measurement::join(std::move(parts)), run);

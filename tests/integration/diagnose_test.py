@@ -3,6 +3,7 @@
 """`stillhand diagnose` and `stillhand predict` as a user runs them: a planted effect is named and predicted from the
 recording's inputs; the report; wrong input."""
 import csv
+import hashlib
 import json
 import math
 import random
@@ -114,6 +115,22 @@ class DiagnoseTest(FolderCase):
     def test_a_recording_given_twice_is_refused(self):
         recording = self.planted("none")
         self.refused_for("the same file", "diagnose", recording, recording.parent / "." / recording.name)
+
+    def test_a_plan_of_other_recordings_is_refused(self):
+        before, run = self.planted("coupled_input"), self.planted("delay")
+        digests = [hashlib.sha256(path.read_bytes()).hexdigest() for path in (before, run)]
+        plan = self.folder / "plan.json"
+
+        def refused(sources):
+            plan.write_text(json.dumps({"provenance": {
+                "version": "1", "date": "2026-11-27T00:00:00Z", "command": "stillhand plan-run",
+                "sources": [{"name": "a.csv", "sha256": digest} for digest in sources]}}))
+            return self.refused("diagnose", before, run, "--plan", plan)
+
+        self.assertIn("a plan of other recordings", refused(digests[1:]))
+        self.assertIn("a plan of other recordings", refused(digests))
+        # Of these recordings, it is read on.
+        self.assertIn("a file without candidates", refused(digests[:1]))
 
     def test_an_input_that_moves_nothing_explains_nothing(self):
         noise = random.Random(3)
