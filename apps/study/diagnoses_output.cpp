@@ -11,6 +11,7 @@
 #include "apps/study/csv_cells.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/participants.hpp"
+#include "apps/study/recorded/whose.hpp"
 #include "apps/study/report_cells.hpp"
 
 namespace stillhand::study {
@@ -72,20 +73,60 @@ std::string left_text(const std::optional<Remaining>& remaining) {
   return remaining ? level_text(remaining->left) : "–";
 }
 
+const char* owner(Whose whose) {
+  switch (whose) {
+    case Whose::kRig:
+      return "the rig's";
+    case Whose::kPerson:
+      return "a person's";
+    case Whose::kOpen:
+      break;
+  }
+  return "not decided";
+}
+
+// Whether to mend the rig before modelling each person.
+std::string mend_first(const Diagnoses& diagnoses) {
+  const double of_rig = share_of(diagnoses, Whose::kRig);
+  if (of_rig == 0.0) return "No effect is the rig's as far as these people show.";
+  const bool pays = of_rig > 1.0 - of_rig;
+  return fmt::format(
+      "{}: the rig's effects are {} % of the mean square force that the models of these people "
+      "lack.",
+      pays ? "Mend the rig first" : "Mending the rig is not the larger part",
+      number(100.0 * of_rig, 0));
+}
+
+std::string left_out_sentence(const Diagnoses& diagnoses) {
+  LeftOutPerson sum;
+  for (const LeftOutPerson& each : leave_one_out(diagnoses.people)) {
+    sum.found += each.found;
+    sum.forecast += each.forecast;
+    sum.false_ones += each.false_ones;
+  }
+  return fmt::format(
+      "Each person left out in turn, the others forecast {} of the {} effects that were found, and "
+      "{} that the person does not have.",
+      sum.forecast, sum.found, sum.false_ones);
+}
+
 report::Table recurring_table(const Diagnoses& diagnoses) {
   report::Table table;
   table.caption = fmt::format(
-      "Effects that the paper's model lacks, over the {} people with a diagnosis. The force is the "
-      "median over the people who have the effect, RMS.",
+      "Effects that the paper's model lacks, over the {} people with a diagnosis: in how many it "
+      "was found, of those in whom it could have been; median RMS force over the people who have "
+      "it; and the chance that the model of a newcomer lacks it.",
       diagnoses.people.size());
-  table.header = {"effect", "people", "force [N]", "who"};
+  table.header = {"effect", "whose", "people", "force [N]", "newcomer", "who"};
   for (const RecurringEffect& effect : diagnoses.recurring) {
-    table.rows.push_back({effect_words(effect.kind, effect.channel, effect.where),
-                          std::to_string(effect.participants.size()), number(effect.explained_n, 2),
-                          fmt::format("{}", fmt::join(effect.participants, ", "))});
+    table.rows.push_back(
+        {effect_words(effect.kind, effect.channel, effect.where), owner(effect.whose),
+         fmt::format("{} of {}", effect.participants.size(), effect.able),
+         number(effect.explained_n, 2), number(100.0 * newcomers_chance(effect), 0) + " %",
+         fmt::format("{}", fmt::join(effect.participants, ", "))});
   }
-  table.align = {report::Align::kLeft, report::Align::kRight, report::Align::kRight,
-                 report::Align::kLeft};
+  using enum report::Align;
+  table.align = {kLeft, kLeft, kRight, kRight, kRight, kLeft};
   return table;
 }
 
@@ -139,10 +180,10 @@ std::string gain_sentence(const Diagnoses& diagnoses) {
 }
 
 ordered_json diagnoses_json(const Diagnoses& diagnoses) {
-  ordered_json out{{"participants", ordered_json::object()},
-                   {"failed", ordered_json::object()},
-                   {"recurring", ordered_json::array()},
-                   {"gain", nullptr}};
+  ordered_json out{
+      {"participants", ordered_json::object()}, {"failed", ordered_json::object()},
+      {"recurring", ordered_json::array()},     {"rigs_share", share_of(diagnoses, Whose::kRig)},
+      {"left_out", ordered_json::object()},     {"gain", nullptr}};
   for (const auto& [code, person] : diagnoses.people) {
     out["participants"][code] = person_json(person);
   }
@@ -153,7 +194,14 @@ ordered_json diagnoses_json(const Diagnoses& diagnoses) {
                                 {"where", effect.where},
                                 {"people", effect.participants.size()},
                                 {"participants", effect.participants},
-                                {"explained_n", effect.explained_n}});
+                                {"explained_n", effect.explained_n},
+                                {"able", effect.able},
+                                {"whose", owner(effect.whose)},
+                                {"newcomers_chance", newcomers_chance(effect)}});
+  }
+  for (const LeftOutPerson& each : leave_one_out(diagnoses.people)) {
+    out["left_out"][each.participant] = {
+        {"found", each.found}, {"forecast", each.forecast}, {"false", each.false_ones}};
   }
   if (diagnoses.gain) {
     const auto& test = *diagnoses.gain;
@@ -239,6 +287,7 @@ void add_diagnoses(report::Page& page, const StudyRecord& record, const report::
     page.paragraph("No effect was found in any participant.");
   } else {
     page.table(recurring_table(diagnoses));
+    page.paragraph(mend_first(diagnoses) + " " + left_out_sentence(diagnoses));
   }
   if (!diagnoses.people.empty()) page.table(people_table(record));
   if (drawing != nullptr) page.figure(*drawing);

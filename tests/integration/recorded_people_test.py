@@ -99,6 +99,10 @@ class RecordedPeopleTest(SampleExperimentCase):
             self.assertEqual(effect["people"], len(people))
             self.assertEqual(effect["participants"], sorted(people))
             self.assertAlmostEqual(effect["explained_n"], numpy.median(list(people.values())), delta=EXACT)
+            self.assertTrue(effect["people"] <= effect["able"] <= len(diagnoses["participants"]))
+        for code, left in diagnoses["left_out"].items():
+            self.assertEqual(left["found"], len(diagnoses["participants"][code]["findings"]))
+            self.assertLessEqual(left["forecast"], left["found"])
 
     def test_neither_threads_nor_other_people_change_a_diagnosis(self):
         again = self.folder / "one_thread"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// write_sample_experiment DIR [REMNANT [GAIN [EFFECT [REFUSED]]]]: conducts every participant of an
-// experiment that `stillhand experiment new` made, with simulated subjects and without a bus: the
-// cores in one process, then journals and recordings as a session over the bus leaves them.  Five
-// participants are special, where there are so many:
+// write_sample_experiment DIR [REMNANT [GAIN [EFFECT [REFUSED [FRICTION [HOLDERS]]]]]]: conducts
+// every participant of an experiment that `stillhand experiment new` made, with simulated subjects
+// and without a bus: the cores in one process, then journals and recordings as a session over the
+// bus leaves them.  Five participants are special, where there are so many:
 //
 //   P02  the first trial is ended after half its length and runs again
 //   P03  the session is killed after the first trial; a second session goes on
@@ -13,7 +13,8 @@
 // REMNANT is added to the seeds of remnant and sensor noise, so that a simulation of the same
 // people meets other noise; GAIN is that of the motor, so that it meets another rig; EFFECT is the
 // seed of an undeclared effect that every rig holds; REFUSED is the number of a participant whose
-// canceller refuses the model of C+ and goes on with the one before.
+// canceller refuses the model of C+ and goes on with the one before.  FRICTION [N] is that of every
+// stick; HOLDERS are the digits of the participants who alone hold EFFECT, as 26 for P02 and P06.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -51,12 +52,21 @@ struct Otherwise {
   double motor_gain = 1.0;
   std::uint64_t effect = 0;
   std::size_t refused = 0;
+  double friction_n = rig::StickConfig{}.coulomb_friction_n;
+  std::string holders;  ///< empty: all
+
+  [[nodiscard]] std::uint64_t effect_of(std::size_t index) const {
+    const bool holds =
+        holders.empty() || holders.find(std::to_string(index + 1)) != std::string::npos;
+    return holds ? effect : 0;
+  }
 };
 
 session::CoreConfigs configs_of(const experiment::Design& design, std::size_t index,
                                 const Otherwise& otherwise) {
   session::CoreConfigs configs;
   configs.rig.motor.gain = otherwise.motor_gain;
+  configs.rig.stick.coulomb_friction_n = otherwise.friction_n;
   const auto subject = population::draw_subject({}, static_cast<std::uint64_t>(design.subject_seed),
                                                 static_cast<std::int64_t>(index));
   configs.rig.body = subject.body;
@@ -77,7 +87,7 @@ class SampleSession {
         refused_(otherwise.refused),
         loop_(configs_of(folder.design(), index, otherwise),
               experiment::session_seed(folder.design(), index, number) + otherwise.remnant, 1,
-              rig::SealedEffect(otherwise.effect, rig::RigConfig{})) {
+              rig::SealedEffect(otherwise.effect_of(index), rig::RigConfig{})) {
     loop_.keep_measured();
     protocol_.trial_s = folder.design().trial_s;
     protocol_.identify_s = folder.design().identify_s;
@@ -309,8 +319,11 @@ void conduct(const experiment::Folder& folder, std::size_t index, const Otherwis
 }  // namespace stillhand::tests
 
 int main(int argc, char** argv) {
-  if (argc < 2 || argc > 6) {
-    std::fputs("usage: write_sample_experiment DIR [REMNANT [GAIN [EFFECT [REFUSED]]]]\n", stderr);
+  if (argc < 2 || argc > 8) {
+    std::fputs(
+        "usage: write_sample_experiment DIR [REMNANT [GAIN [EFFECT [REFUSED "
+        "[FRICTION [HOLDERS]]]]]]\n",
+        stderr);
     return 2;
   }
   try {
@@ -319,6 +332,8 @@ int main(int argc, char** argv) {
     if (argc > 3) otherwise.motor_gain = std::stod(argv[3]);
     if (argc > 4) otherwise.effect = std::stoull(argv[4]);
     if (argc > 5) otherwise.refused = std::stoul(argv[5]);
+    if (argc > 6) otherwise.friction_n = std::stod(argv[6]);
+    if (argc > 7) otherwise.holders = argv[7];
     const stillhand::experiment::Folder folder(argv[1]);
     folder.register_design();
     for (std::int64_t n = 0; n < folder.design().participants; ++n) {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "apps/study/conditions.hpp"
+#include "apps/study/recorded/whose.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/statistics/descriptive.hpp"
 #include "services/system/process/run_jobs.hpp"
@@ -70,6 +71,8 @@ std::string reason_in(const std::string& note) {
 PersonDiagnosis diagnosis_of(RecordedLoop loop) {
   PersonDiagnosis out;
   out.verdict = loop.verdict.conclusion();
+  out.detectable_body_n = close_the_loop::detectable_n(loop.verdict, false);
+  out.detectable_drive_n = close_the_loop::detectable_n(loop.verdict, true);
   out.findings = std::move(loop.verdict.findings);
   std::erase_if(out.findings, [](const close_the_loop::Finding& each) { return !each.counts; });
   close_the_loop::Judged& judged = loop.judged.back();
@@ -120,6 +123,19 @@ std::optional<statistics::TTest> gain_over(const std::map<std::string, PersonDia
   }
 }
 
+// In whom the effect was found, or could have been.
+std::size_t able_of(const std::map<std::string, PersonDiagnosis>& people,
+                    const RecurringEffect& effect) {
+  std::size_t count = effect.participants.size();
+  for (const auto& [code, person] : people) {
+    if (std::ranges::find(effect.participants, code) != effect.participants.end()) continue;
+    const bool of_drive = effect.where == close_the_loop::kDrive;
+    const double least_n = of_drive ? person.detectable_drive_n : person.detectable_body_n;
+    if (effect.explained_n >= least_n) ++count;
+  }
+  return count;
+}
+
 }  // namespace
 
 std::optional<double> PersonDiagnosis::gain_n() const {
@@ -147,6 +163,8 @@ std::vector<RecurringEffect> recurring_in(const std::map<std::string, PersonDiag
   std::vector<RecurringEffect> out;
   for (auto& [key, effect] : found) {
     effect.explained_n = statistics::median(forces[key]);
+    effect.able = able_of(people, effect);
+    effect.whose = whose(effect.participants.size(), effect.able);
     out.push_back(std::move(effect));
   }
   std::ranges::stable_sort(out, [](const RecurringEffect& a, const RecurringEffect& b) {

@@ -23,11 +23,20 @@ struct PersonDiagnosis {
   /// The motion of pegged samples that no fit saw, through canceller and motor.
   std::optional<close_the_loop::Remaining> by_linear;     ///< with the linear model, as in C
   std::optional<close_the_loop::Remaining> by_augmented;  ///< as in C+
-  double unseen_s = 0.0;                                  ///< [s] length of those samples
-  std::string not_replayed;  ///< why there is no C+ to compare, or empty
+  double detectable_body_n = 0.0;   ///< [N] RMS from which a verdict could name a further effect
+  double detectable_drive_n = 0.0;  ///< [N] the same in the drive
+  double unseen_s = 0.0;            ///< [s] length of those samples
+  std::string not_replayed;         ///< why there is no C+ to compare, or empty
 
   /// [N] RMS force that C+ would have left less than C; none without both.
   [[nodiscard]] std::optional<double> gain_n() const;
+};
+
+/// Whose an effect is, by the people in whom it was found; METHOD Eq. SU-21.
+enum class Whose {
+  kRig,     ///< more than half of all people would have it
+  kPerson,  ///< too few have it for one that everybody has
+  kOpen,    ///< these people do not decide it
 };
 
 /// One kind of effect over people.
@@ -37,6 +46,8 @@ struct RecurringEffect {
   std::string where;    ///< body, drive, motor path, load cell
   std::vector<std::string> participants;
   double explained_n = 0.0;  ///< [N] median RMS force over these participants
+  std::size_t able = 0;      ///< people in whom an effect of that size could be named
+  Whose whose = Whose::kOpen;
 };
 
 /// The diagnoses of a recorded study.
