@@ -68,7 +68,7 @@ class CloseTheLoopTest(LoopCase):
         report = (self.out / "report.html").read_text()
         self.assertIn("coupled_input", report)
         self.assertEqual(report.count("<svg"), 5)
-        (worth,) = summary["repair"]["effects"]
+        worth = summary["repair"]["effects"][0]
         self.assertEqual((worth["kind"], worth["channel"], worth["why_not"]), ("coupled_input", "a_x", None))
         for way in ("mended", "cancelled"):
             low, high = worth["change_mm"][way]["interval95"]
