@@ -42,7 +42,7 @@ std::string when(const session::Miss& miss) {
 std::string json_of(const std::vector<session::Miss>& misses) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const session::Miss& miss : misses) list.push_back(session::json_of(miss));
-  return list.dump(2) + "\n";
+  return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 double seconds_from(const session::Miss& miss, std::int64_t at_ns) {

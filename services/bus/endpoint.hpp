@@ -132,8 +132,10 @@ class ReaderEndpoint final : public Endpoint, public edds::DataReaderListener {
   [[nodiscard]] bool has_living_writer() const noexcept;
 
   /// The topic is written once, by one process: a sample may wait until that process is named.
+  /// A recorder takes everything at once.
   [[nodiscard]] bool may_wait() const noexcept {
-    return sources != nullptr && topic_.pattern == topics::Pattern::kStateLatched;
+    return sources != nullptr && !options_.serialized &&
+           topic_.pattern == topics::Pattern::kStateLatched;
   }
 
   const std::size_t source_;    // place of the topic's only writer, or Sources::kAnybody

@@ -3,8 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <cstring>
 #include <iostream>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -16,13 +19,12 @@
 #include "services/bus/trial_codec.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
-#include "services/system/process/clock.hpp"
 #include "services/system/process/real_time.hpp"
 
 namespace stillhand::runtime {
 namespace {
 
-constexpr std::int64_t kStallPeriod_ns = 100'000'000;  // StallWatch::step()
+constexpr std::chrono::milliseconds kStallPeriod{100};  // StallWatch::step()
 
 stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
   switch (kind) {
@@ -142,8 +144,10 @@ void Service::end_without_experiment() {
 // nothing.
 void Service::note_stalls(const std::stop_token& stop) {
   become_background();
-  while (!stop.stop_requested()) {
-    sleep_until_ns(monotonic_ns() + kStallPeriod_ns);
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  while (!wake.wait_for(lock, stop, kStallPeriod, [&] { return stop.stop_requested(); })) {
     const std::optional<Stall> stall = stall_watch_.step();
     if (!stall || stall->why.empty()) continue;
     note_event(stillhand_msgs::EVENT_CYCLE_MISSED, stall->why.c_str(), 1e6 * stall->late_s,

@@ -133,6 +133,7 @@ void Sources::adopt() {
     set(place_of(source.service), source.participant);
   }
   named_.store(true, std::memory_order_release);
+  ever_named_.store(true, std::memory_order_release);
   contested_.store(false, std::memory_order_release);
 }
 
@@ -147,7 +148,8 @@ bool Sources::admits(std::size_t service, const Handle& writer) const noexcept {
 }
 
 bool Sources::awaits(std::size_t service) const noexcept {
-  return service < sources_.size() && topics::kServices[service] != "experiment" && !named();
+  return service < sources_.size() && topics::kServices[service] != "experiment" &&
+         !ever_named_.load(std::memory_order_acquire);
 }
 
 bool Sources::speaks_for(std::string_view service,

@@ -68,7 +68,8 @@ class Sources {
   /// The writer belongs to the participant that is named for a process.  Before the sources are
   /// named: it writes for the experiment.
   [[nodiscard]] bool admits(std::size_t service, const Handle& writer) const noexcept;
-  /// Nobody can say yet whether a writer writes for the process.
+  /// No session has named its sources yet, so nobody can say whether a writer writes for the
+  /// process.  Between two sessions what comes is nobody's.
   [[nodiscard]] bool awaits(std::size_t service) const noexcept;
   /// The participant is the one that is named for the process.  Before that: anybody, for a process
   /// that starts says so.
@@ -114,6 +115,7 @@ class Sources {
   Options options_;
   std::array<Named, topics::kServices.size()> sources_;
   std::atomic<bool> named_{false};
+  std::atomic<bool> ever_named_{false};
   std::atomic<bool> contested_{false};
   std::atomic<bool> second_present_{false};
   std::atomic<const char*> newest_second_{nullptr};  // a line of lines_

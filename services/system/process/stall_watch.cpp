@@ -99,12 +99,15 @@ StallWatch::~StallWatch() {
 
 void StallWatch::beat() noexcept {
   const std::int64_t now_ns = monotonic_ns();
+  const int processor = sched_getcpu();
   const std::int64_t from_ns = std::exchange(last_ns_, now_ns);
+  const int before = std::exchange(last_processor_, processor);
   if (from_ns == 0) {
     thread_.store(gettid(), std::memory_order_relaxed);
     return;
   }
-  if (now_ns - from_ns >= kLeast_ns) silences_.push({from_ns, now_ns, sched_getcpu()});
+  if (now_ns - from_ns < kLeast_ns) return;
+  silences_.push({from_ns, now_ns, before == processor ? processor : -1});
 }
 
 ThreadAccount StallWatch::account() {
@@ -128,7 +131,7 @@ ThreadAccount StallWatch::account() {
 // On a machine that is too busy, reading for each silence would make it busier.
 Occupation StallWatch::meanwhile(const Silence& silence) {
   const std::int64_t now_ns = monotonic_ns();
-  if (silence.until_ns - silence.from_ns < kWorthATrace_ns) return {};
+  if (silence.processor < 0 || silence.until_ns - silence.from_ns < kWorthATrace_ns) return {};
   if (asked_ns_ != 0 && now_ns - asked_ns_ < kBetweenTraces_ns) return {};
   asked_ns_ = now_ns;
   const OrdinaryWhile ordinary;

@@ -59,13 +59,14 @@ class StallWatch {
  private:
   struct Silence {
     std::int64_t from_ns, until_ns;
-    int processor;
+    int processor;  // -1: the thread moved
   };
   [[nodiscard]] ThreadAccount account();
   [[nodiscard]] Occupation meanwhile(const Silence& silence);
 
   std::atomic<pid_t> thread_{0};
   std::int64_t last_ns_ = 0;  // of the thread that is watched
+  int last_processor_ = -1;   // likewise
   boost::lockfree::spsc_queue<Silence, boost::lockfree::capacity<16>> silences_;
   std::array<ThreadAccount, 64> accounts_{};  // newest first, 6 s
   std::int64_t continued_ = 0;

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <vector>
 
 namespace stillhand::runtime {
 namespace {
@@ -27,59 +28,100 @@ struct Switch {
   std::string_view program;
 };
 
-/// What stands between two marks; empty without them.
-std::string_view between(std::string_view line, std::string_view before, std::string_view behind) {
-  const std::size_t begin = line.find(before);
-  if (begin == line.npos) return {};
-  line.remove_prefix(begin + before.size());
-  return line.substr(0, line.find(behind));
-}
+// A program chooses its own name, and may choose a mark of the format: so each field is looked for
+// from the end of the line, where the kernel's own numbers stand.
+struct Fields {
+  std::string_view line;
 
-pid_t id_in(std::string_view line, std::string_view before) {
-  return static_cast<pid_t>(std::atoi(std::string(between(line, before, " ")).c_str()));
-}
+  /// What stands behind the last `mark`, which goes with all behind it; empty without one.
+  std::string_view cut(std::string_view mark) {
+    const std::size_t begin = line.rfind(mark);
+    if (begin == line.npos) return {};
+    const std::string_view found = line.substr(begin + mark.size());
+    line = line.substr(0, begin);
+    return found;
+  }
+  pid_t number(std::string_view mark) {
+    return static_cast<pid_t>(std::atoi(std::string(cut(mark)).c_str()));
+  }
+};
 
 std::optional<Switch> switch_of(std::string_view line) {
-  constexpr std::string_view kEvent = ": sched_switch: ";
-  const std::size_t event = line.find(kEvent);
-  if (event == line.npos) return std::nullopt;
-  const std::size_t stamp = line.rfind(' ', event);
-  const std::string_view state = between(line, " prev_state=", " ");
-  if (stamp == line.npos || state.empty()) return std::nullopt;
-  const std::string seconds(line.substr(stamp + 1, event - stamp - 1));
-  return Switch{std::llround(1e9 * std::strtod(seconds.c_str(), nullptr)),
-                id_in(line, " prev_pid="), state.front(), id_in(line, " next_pid="),
-                between(line, " next_comm=", " next_pid=")};
+  if (line.find(": sched_switch: ") == line.npos) return std::nullopt;
+  Fields fields{line};
+  Switch found{};
+  found.came = fields.number(" next_pid=");
+  found.program = fields.cut(" ==> next_comm=");
+  const std::string_view state = fields.cut(" prev_state=");
+  found.left = fields.number(" prev_pid=");
+  fields.cut(": sched_switch: ");
+  const std::string seconds(fields.cut(" "));
+  if (state.empty() || seconds.empty()) return std::nullopt;
+  found.left_as = state.front();
+  found.at_ns = std::llround(1e9 * std::strtod(seconds.c_str(), nullptr));
+  return found;
+}
+
+std::string printable(std::string_view name) {
+  constexpr std::size_t kLongest = 15;  // TASK_COMM_LEN
+  std::string out(name.substr(0, kLongest));
+  std::ranges::replace_if(out, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return out;
+}
+
+// The longest time from a leaving of the thread, `from_ns` or later, until it came back.
+struct Absence {
+  std::int64_t from_ns = 0;
+  std::int64_t until_ns = 0;
+  char left_as = 0;
+};
+
+std::vector<Switch> switches_of(std::string_view trace) {
+  std::vector<Switch> switches;
+  while (!trace.empty()) {
+    const std::string_view line = trace.substr(0, trace.find('\n'));
+    trace.remove_prefix(std::min(trace.size(), line.size() + 1));
+    if (const std::optional<Switch> found = switch_of(line)) switches.push_back(*found);
+  }
+  return switches;
+}
+
+Absence longest_absence(const std::vector<Switch>& switches, pid_t thread, std::int64_t from_ns,
+                        std::int64_t until_ns) {
+  constexpr std::int64_t kStamp_ns = 1000;  // the trace's stamps are whole microseconds
+  Absence longest;
+  Absence open;
+  for (const Switch& each : switches) {
+    if (each.left == thread) open = {each.at_ns, 0, each.left_as};
+    if (each.came != thread || open.left_as == 0) continue;
+    open.until_ns = each.at_ns;
+    const bool within =
+        open.from_ns >= from_ns - kStamp_ns && open.until_ns <= until_ns + kStamp_ns;
+    if (within && open.until_ns - open.from_ns > longest.until_ns - longest.from_ns) longest = open;
+    open = {};
+  }
+  return longest;
 }
 
 }  // namespace
 
 Occupation occupation(std::string_view trace, pid_t thread, std::int64_t from_ns,
                       std::int64_t until_ns) {
+  const std::vector<Switch> switches = switches_of(trace);
+  const Absence away = longest_absence(switches, thread, from_ns, until_ns);
   Occupation found;
+  found.left_as = away.left_as;
   std::map<std::string_view, std::int64_t> had_ns;
-  std::optional<Switch> before;
-  const auto count = [&](std::int64_t end_ns) {
-    if (!before || before->came == thread) return;
-    const std::int64_t spent_ns = std::min(end_ns, until_ns) - std::max(before->at_ns, from_ns);
-    if (spent_ns <= 0) return;
-    (before->came == kIdle ? found.idle_ns : had_ns[before->program]) += spent_ns;
-  };
-  while (!trace.empty()) {
-    const std::string_view line = trace.substr(0, trace.find('\n'));
-    trace.remove_prefix(std::min(trace.size(), line.size() + 1));
-    const std::optional<Switch> now = switch_of(line);
-    if (!now) continue;
-    if (now->at_ns > until_ns) break;
-    count(now->at_ns);
-    if (now->left == thread) found.left_as = now->left_as;
-    before = now;
+  for (std::size_t i = 0; i + 1 < switches.size(); ++i) {
+    const std::int64_t spent_ns =
+        std::min(switches[i + 1].at_ns, away.until_ns) - std::max(switches[i].at_ns, away.from_ns);
+    if (spent_ns <= 0) continue;
+    (switches[i].came == kIdle ? found.idle_ns : had_ns[switches[i].program]) += spent_ns;
   }
-  count(until_ns);
   const auto most =
       std::ranges::max_element(had_ns, {}, [](const auto& each) { return each.second; });
   if (most != had_ns.end()) {
-    found.program = most->first;
+    found.program = printable(most->first);
     found.had_ns = most->second;
   }
   return found;
@@ -90,12 +132,15 @@ SwitchTrace::SwitchTrace(const std::filesystem::path& tracefs)
   const auto set = [this](const char* file, const char* value) {
     std::ofstream(instance_ / file) << value;
   };
-  if (mkdir(instance_.c_str(), 0700) == 0) {  // else another process of the session made it
+  // The last process of another session may remove it in between.
+  for (int tried = 0; tried < 2 && joined_ < 0; ++tried) {
+    const bool made = mkdir(instance_.c_str(), 0700) == 0;
+    joined_ = open((instance_ / "trace_clock").c_str(), O_RDONLY | O_CLOEXEC);
+    if (!made || joined_ < 0) continue;
     set("buffer_size_kb", "1024");
     set("trace_clock", "mono");
-    set("events/sched/sched_switch/enable", "1");
   }
-  joined_ = open((instance_ / "trace_clock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (available()) set("events/sched/sched_switch/enable", "1");  // its maker may have died before
 }
 
 SwitchTrace::~SwitchTrace() {

@@ -10,7 +10,7 @@
 
 namespace stillhand::runtime {
 
-/// What a processor did while a thread was not on it.
+/// What a processor did in the longest time between a leaving of a thread and its return to it.
 struct Occupation {
   char left_as = 0;     ///< state in which the thread left it, ps(1): R, S, D, T, t; 0: not seen
   std::string program;  ///< that had it for longest; empty: none, or nobody knows
