@@ -82,7 +82,7 @@ def main():
     words.entry.mkdir(parents=True, exist_ok=True)
     for train in sorted(words.recordings.glob("*_train.csv")):
         name = train.name.removesuffix("_train.csv")
-        if not (words.entry / f"{name}.csv").is_file():
+        if not (words.entry / f"{name}.csv").is_file():  # a run that was stopped goes on
             TOOLS[words.tool](train, words.recordings / f"{name}_test.csv", words.entry, name)
             print(name, flush=True)
     return 0

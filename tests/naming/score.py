@@ -11,6 +11,7 @@ import argparse
 import csv
 import hashlib
 import json
+import math
 import pathlib
 import sys
 
@@ -18,6 +19,7 @@ import numpy
 
 SETTLE_S = 2.0  # the first seconds of a prediction do not count: it does not know the state at the start
 HARM = 1.05     # times the error of the best linear response
+BELOW_NOISE = 0.9  # times the least possible error: no model gets there
 VERDICTS = ("all", "part", "wrong", "missed", "quiet", "false alarm")
 
 
@@ -28,7 +30,7 @@ class Unreadable(Exception):
 def matches(effect, named):
     """A free form of the right channel is right too: of a shape without a name nothing more can be said."""
     if named["kind"] == "free_form":
-        return named["channel"] in (effect.get("channel") or "").split("*")
+        return bool(named["channel"]) and named["channel"] in (effect.get("channel") or "").split("*")
     return any(kind == named["kind"] and channel in (None, named["channel"]) for kind, channel in effect["right"])
 
 
@@ -42,12 +44,14 @@ def judged(truth, named, too_small=False):
         return "quiet" if too_small else "missed"
     hit = [any(matches(effect, each) for each in named) for effect in truth]
     others = [each for each in named if not any(matches(effect, each) for effect in truth)]
-    return "all" if all(hit) and not others else "part" if any(hit) else "wrong"
+    if all(hit) and not others:
+        return "all"
+    return "part" if any(hit) and len(others) <= len(named) - len(others) else "wrong"
 
 
 def table(path):
     """Columns by name, without units."""
-    with open(path, newline="") as file:
+    with open(path, newline="", encoding="utf-8-sig") as file:
         rows = list(csv.reader(file))
     try:
         values = numpy.array(rows[1:], dtype=float)
@@ -59,7 +63,10 @@ def table(path):
 def effects_of(path):
     try:
         effects = json.loads(path.read_text())["effects"]
-        return [{"kind": each["kind"], "channel": each.get("channel")} for each in effects]
+        named = [{"kind": each["kind"], "channel": each.get("channel")} for each in effects]
+        if isinstance(effects, list) and all(isinstance(each["kind"], str) for each in named):
+            return named
+        raise ValueError("a kind is a text")
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise Unreadable(f'{path}: want {{"effects": [{{"kind": ..., "channel": ...}}]}} ({error!r})') from error
 
@@ -69,6 +76,8 @@ def error_of(prediction, measured):
     predicted = table(prediction)
     if not {"t", "f"} <= set(predicted):
         raise Unreadable(f"{prediction}: want the columns t [s] and f [N]")
+    if not numpy.all(numpy.diff(predicted["t"]) > 0) or predicted["t"][0] > measured["t"][0] + SETTLE_S:
+        raise Unreadable(f"{prediction}: want the time of the recording, ascending, from {measured['t'][0]:g} s on")
     counts = measured["t"] - measured["t"][0] >= SETTLE_S
     if predicted["t"][-1] < measured["t"][-1] - 0.1:
         raise Unreadable(f"{prediction}: ends at {predicted['t'][-1]:g} s, the recording at {measured['t'][-1]:g} s")
@@ -89,6 +98,8 @@ def scored(recordings, entry):
         answer, prediction = entry / f"{name}.json", entry / f"{name}.csv"
         named = effects_of(answer) if answer.is_file() else None
         error = error_of(prediction, table(recordings / f"{name}_test.csv")) if prediction.is_file() else None
+        if error is not None and error < BELOW_NOISE * least:
+            raise Unreadable(f"{prediction}: the error is below the noise; was the force of the test read?")
         rows.append({"name": name, "truth": truth["effects"], "named": named, "linear": linear, "least": least,
                      "verdict": judged(truth["effects"], named, linear < 1.01 * least), "error": error})
     if not rows:
@@ -105,7 +116,7 @@ def scored(recordings, entry):
 def digest(recordings):
     """Of all files, so that two people know that they have the same."""
     total = hashlib.sha256()
-    for path in sorted(recordings.iterdir()):
+    for path in sorted(recordings.glob("rec_*")):
         total.update(path.name.encode() + b"\0" + path.read_bytes())
     return total.hexdigest()[:16]
 
@@ -118,7 +129,7 @@ def summary(rows):
         return count, None
     over = numpy.array([row["error"] / row["least"] for row in predicted])
     left = numpy.array([(row["error"] - row["least"]) / (row["linear"] - row["least"]) for row in predicted
-                        if row["truth"] and row["linear"] > 1.01 * row["least"]])
+                        if row["truth"] and row["linear"] > 1.01 * row["least"]] or [math.nan])
     harm = sum(row["error"] > HARM * row["linear"] for row in predicted)
     return count, (float(numpy.median(over)), float(numpy.quantile(over, 0.9)), float(numpy.median(left)), harm,
                    len(predicted))
@@ -130,12 +141,15 @@ def main():
     parser.add_argument("entries", type=pathlib.Path, nargs="+")
     parser.add_argument("--each", action="store_true", help="a line for each recording, too")
     words = parser.parse_args()
+    if len({entry.name for entry in words.entries}) < len(words.entries):
+        parser.error("two entries have one name")
     try:
         results = {entry.name: scored(words.recordings, entry) for entry in words.entries}
+        same = digest(words.recordings)
     except (Unreadable, OSError) as error:
         print(f"score: {error}", file=sys.stderr)
         return 2
-    print(f"{len(next(iter(results.values())))} recordings, digest {digest(words.recordings)}\n")
+    print(f"{len(next(iter(results.values())))} recordings, digest {same}\n")
     print("| entry | " + " | ".join(VERDICTS) + " | error over the least: median, 90 % below | of what a linear model "
           "leaves, left | harm |\n" + "| --- " * (len(VERDICTS) + 4) + "|")
     for name, rows in results.items():

@@ -34,7 +34,7 @@ Model of_order(int order, Model rest, const Signals& signals, const Blocks& bloc
 std::optional<int> order_instead(const Model& model, const Signals& signals, const Blocks& blocks,
                                  int order, double impulse_response_rmse,
                                  const SearchOptions& options) {
-  if (order < 1 || signals.slow_poles()) return std::nullopt;
+  if (order < 1 || options.most_effects == 0 || signals.slow_poles()) return std::nullopt;
   Model rest = model;
   const bool bent = std::erase_if(rest.effects, bends) > 0;
   if (passes_through_body(rest)) return std::nullopt;
@@ -43,14 +43,15 @@ std::optional<int> order_instead(const Model& model, const Signals& signals, con
   HeldOut least = held_out(model, part, of_part);
   if (!bent && !(impulse_response_rmse < kLongResponse * least.rmse())) return std::nullopt;
   std::optional<int> taken;
-  for (int higher = order + 2; higher <= kHighestTried; higher += 2) {
-    HeldOut next = held_out(of_order(higher, rest, part, of_part), part, of_part);
+  while (order < kHighestTried) {
+    order = std::min(order + 2, kHighestTried);
+    HeldOut next = held_out(of_order(order, rest, part, of_part), part, of_part);
     // Between bodies cross-validation alone decides: a mode more or less is no verdict.
     const bool better = bent && !taken
                             ? !worth_it(compared(next, least), options, options.first_least_fall, 1)
                             : next.rmse() < (1.0 - options.least_fall) * least.rmse();
     if (!better) continue;
-    taken = higher;
+    taken = order;
     least = std::move(next);
   }
   return taken;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <utility>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/before_effects.hpp"
@@ -388,10 +389,10 @@ void note_derived(Diagnosis& diagnosis, const Signals& signals) {
 }
 
 Diagnosis at_order(int order, const Measurement& measurement, DiagnoseOptions options) {
-  options.order = order;
+  const int lower = std::exchange(options.order, order);
   Diagnosis diagnosis = diagnose(measurement, options);
-  diagnosis.notes.push_back("A body of order " + std::to_string(options.order) +
-                            " explains what one of a lower order leaves.");
+  diagnosis.notes.push_back("A body of order " + std::to_string(order) +
+                            " explains what one of order " + std::to_string(lower) + " left.");
   return diagnosis;
 }
 
