@@ -134,12 +134,16 @@ TEST(StallWatchDeathTest, NamesASignalThatStoppedTheProcess) {
   EXPECT_EXIT(stopped_and_continued(), testing::ExitedWithCode(0), "");
 }
 
-/// Keeps the first processor busy for this long, before any ordinary thread; needs the right to.
-void hold_the_processor(std::int64_t length_ns) {
+void stay_on_the_first_processor() {
   cpu_set_t first;
   CPU_ZERO(&first);
   CPU_SET(0, &first);
-  sched_setaffinity(0, sizeof(first), &first);
+  pthread_setaffinity_np(pthread_self(), sizeof(first), &first);
+}
+
+/// Keeps the first processor busy for this long, before any ordinary thread; needs the right to.
+void hold_the_processor(std::int64_t length_ns) {
+  stay_on_the_first_processor();
   const sched_param highest{.sched_priority = 50};
   if (sched_setscheduler(0, SCHED_FIFO, &highest) != 0) return;
   for (const std::int64_t end_ns = monotonic_ns() + length_ns; monotonic_ns() < end_ns;) {
@@ -147,10 +151,6 @@ void hold_the_processor(std::int64_t length_ns) {
 }
 
 void stand_behind_another() {
-  cpu_set_t first;
-  CPU_ZERO(&first);
-  CPU_SET(0, &first);
-  pthread_setaffinity_np(pthread_self(), sizeof(first), &first);
   std::atomic<bool> ended{false};
   std::thread other([&ended] {
     hold_the_processor(120 * kMs);
@@ -170,6 +170,8 @@ TEST(StallWatchTest, NamesTheProgramThatHadTheProcessor) {
   const sched_param ordinary{.sched_priority = 0};
   sched_setscheduler(0, SCHED_OTHER, &ordinary);
   Watched sut;
+  sut.once(&stay_on_the_first_processor);
+  (void)sut.after_a_while();
   sut.once(&stand_behind_another);
   const auto stall = sut.stall(0.12);
   ASSERT_TRUE(stall);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "services/system/process/stall_watch.hpp"
@@ -39,10 +40,29 @@ TEST(OccupationTest, SaysWhoHadTheProcessorWhileTheThreadWasAway) {
   EXPECT_EQ(sut.idle_ns, 10 * kMs_ns);
 }
 
-TEST(OccupationTest, CountsWhatLiesWithinTheTimeAlone) {
-  const Occupation sut = occupation(trace_of("R"), kThread, 1045 * kMs_ns, 1055 * kMs_ns);
-  EXPECT_EQ(sut.had_ns, 5 * kMs_ns);
-  EXPECT_EQ(sut.idle_ns, 5 * kMs_ns);
+// It left in a silence of before, or it came back on another processor.
+TEST(OccupationTest, KnowsNothingOfAnAbsenceThatIsNotTheSilence) {
+  EXPECT_EQ(occupation(trace_of("D"), kThread, 1045 * kMs_ns, 1070 * kMs_ns).left_as, 0);
+  EXPECT_EQ(occupation(trace_of("D"), kThread, 1045 * kMs_ns, 1070 * kMs_ns).program, "");
+  EXPECT_EQ(occupation(trace_of("D"), kThread, 999 * kMs_ns, 1060 * kMs_ns).program, "");
+}
+
+TEST(OccupationTest, TakesTheStateOfTheLongestAbsence) {
+  const std::string text = trace_of("R") + line(1.081, "cc1plus x", 7, "R", "sensing", kThread);
+  EXPECT_EQ(occupation(text, kThread, 999 * kMs_ns, 1090 * kMs_ns).left_as, 'R');
+}
+
+TEST(OccupationTest, AProgramsNameFoolsNoField) {
+  for (const char* name :
+       {"x prev_pid=40 a", "a next_pid=0 b", " ==> next_comm=", "tab\tand\xff"}) {
+    const std::string text =
+        line(1.0, "sensing", kThread, "R", name, 7) + line(1.07, name, 7, "R+", "sensing", kThread);
+    const Occupation sut = occupation(text, kThread, 999 * kMs_ns, 1070 * kMs_ns);
+    EXPECT_EQ(sut.left_as, 'R') << name;
+    EXPECT_EQ(sut.idle_ns, 0) << name;
+    EXPECT_EQ(sut.had_ns, 70 * kMs_ns) << name;
+    EXPECT_TRUE(std::ranges::all_of(sut.program, [](char c) { return c >= ' ' && c <= '~'; }));
+  }
 }
 
 TEST(OccupationTest, KnowsNothingFromATraceThatDoesNotReach) {
@@ -63,7 +83,9 @@ std::string why_switched(const std::string& text, std::int64_t waited_ms) {
 TEST(OccupationTest, CompletesTheReason) {
   EXPECT_EQ(why_switched(trace_of("R"), 70),
             "waited 70 ms for a processor; cc1plus x had it for 50 ms");
-  EXPECT_EQ(why_switched(line(1.0, "sensing", kThread, "R", "swapper/1", 0), 70),
+  EXPECT_EQ(why_switched(line(1.0, "sensing", kThread, "R", "swapper/1", 0) +
+                             line(1.07, "swapper/1", 0, "R", "sensing", kThread),
+                         70),
             "waited 70 ms for a processor; it was idle: held back, as by its group's quota of "
             "processor time");
   EXPECT_EQ(why_switched("", 70), "waited 70 ms for a processor");
