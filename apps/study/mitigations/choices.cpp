@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "apps/study/study.hpp"
@@ -15,6 +16,8 @@
 namespace stillhand::study {
 namespace {
 
+using cancellation::PartKind;
+
 // Values tried, each list from gentle to strong.
 constexpr std::array kLowPass_hz{4.0, 2.5, 1.6, 1.0, 0.7, 0.5};
 constexpr std::array kNotchDamping{0.2, 0.4, 0.7, 1.0};
@@ -22,8 +25,22 @@ constexpr double kNotch_hz = 1.2;  // the middle of 0.7 to 2 Hz on a logarithmic
 constexpr std::array kDamping_n_s_m{10.0, 20.0, 40.0, 60.0, 90.0};
 constexpr std::array kSteps{0.002, 0.005, 0.01, 0.02, 0.05};
 
-bool wants(const CampaignOptions& options, std::initializer_list<Condition> any) {
-  return std::ranges::find_first_of(options.mitigations, any) != options.mitigations.end();
+// A condition that is asked for has such a part.
+bool wants(const CampaignOptions& options,
+           const std::function<bool(const cancellation::Part&)>& such) {
+  return std::ranges::any_of(options.mitigations, [&](Condition condition) {
+    return std::ranges::any_of(session::row_of(condition).parts, such);
+  });
+}
+
+bool shapes(const cancellation::Part& part) {
+  return part.kind == PartKind::kLowPass || part.kind == PartKind::kNotch;
+}
+bool damps(const cancellation::Part& part) {
+  return part.kind == PartKind::kImpedance && part.values[0] == 0.0;  // without stiffness
+}
+bool learns(const cancellation::Part& part) {
+  return part.kind == PartKind::kLmsSignal || part.kind == PartKind::kLmsForce;
 }
 
 // Trials of one parameter's values on all tutors.
@@ -152,10 +169,10 @@ Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, 
       "arm, {:.2f} times the force for the target, passive to {:.0f} Hz",
       shaped.stiffness_n_m, shaped.damping_n_s_m, shaped.mass_kg, 100.0 * out.impedance.worst,
       out.impedance.effort, out.impedance.passive_hz));
-  const bool filters = wants(options, {kLowPass, kNotch});
-  const bool damps = wants(options, {kDamping, kDampingForce});
-  const bool learns = wants(options, {kLmsSignal, kLmsForce});
-  if (!filters && !damps && !learns) return out;
+  const bool filters = wants(options, shapes);
+  const bool dampers = wants(options, damps);
+  const bool adaptive = wants(options, learns);
+  if (!filters && !dampers && !adaptive) return out;
   const Trying trying(options, tutors, seed, threads);
   if (filters) {
     out.low_pass.frequency_hz = least(
@@ -167,7 +184,7 @@ Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, 
         trying, "notch at 1.2 Hz, damping ratio", kNotchDamping,
         [&](double z) { return cancellation::Recipe{.shaping = notch(z)}; }, out.log, on_stage));
   }
-  if (damps) {
+  if (dampers) {
     out.damping_n_s_m = least(
         trying, "damping [N s/m]", kDamping_n_s_m,
         [](double b) {
@@ -176,7 +193,7 @@ Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, 
         },
         out.log, on_stage);
   }
-  if (learns) {
+  if (adaptive) {
     out.lms_signal_step = least(
         trying, "step of the signal's LMS", kSteps,
         [](double mu) {

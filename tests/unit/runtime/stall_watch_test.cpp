@@ -161,6 +161,17 @@ void stand_behind_another() {
   other.join();
 }
 
+std::string why_behind_another() {
+  Watched sut;
+  sut.once(&stay_on_the_first_processor);
+  (void)sut.after_a_while();
+  sut.once(&stand_behind_another);
+  const auto stall = sut.stall(0.12);
+  return stall ? stall->why : "no stall";
+}
+
+// On a busy machine a silence of before may have had the one look at the trace in two seconds, or
+// others the processor for longer: then once more.
 TEST(StallWatchTest, NamesTheProgramThatHadTheProcessor) {
   const SwitchTrace rights;
   const sched_param highest{.sched_priority = 50};
@@ -169,15 +180,12 @@ TEST(StallWatchTest, NamesTheProgramThatHadTheProcessor) {
   }
   const sched_param ordinary{.sched_priority = 0};
   sched_setscheduler(0, SCHED_OTHER, &ordinary);
-  Watched sut;
-  sut.once(&stay_on_the_first_processor);
-  (void)sut.after_a_while();
-  sut.once(&stand_behind_another);
-  const auto stall = sut.stall(0.12);
-  ASSERT_TRUE(stall);
-  EXPECT_TRUE(stall->why.starts_with("waited ")) << stall->why;
-  if (stall->late_s > 0.2) return;  // others' work was longer
-  EXPECT_NE(stall->why.find("; unit_runtime had it for "), std::string::npos) << stall->why;
+  std::string why;
+  EXPECT_TRUE(support::eventually([&] {
+    why = why_behind_another();
+    return why.find("; unit_runtime had it for ") != std::string::npos;
+  })) << why;
+  EXPECT_TRUE(why.starts_with("waited ")) << why;
 }
 
 }  // namespace
