@@ -6,7 +6,6 @@
 
 #include "services/core/diagnosis/fitting/baseline.hpp"
 #include "services/core/diagnosis/fitting/fit.hpp"
-#include "services/core/diagnosis/fitting/held_out.hpp"
 #include "services/core/diagnosis/trials.hpp"
 
 namespace stillhand::diagnosis {
@@ -31,6 +30,12 @@ Model of_order(int order, Model rest, const Signals& signals, const Blocks& bloc
 
 }  // namespace
 
+bool outdoes(const HeldOut& bent, const HeldOut& straight, const SearchOptions& options) {
+  const Comparison comparison = compared(straight, bent);
+  return 1.0 - comparison.rmse_ratio > options.first_least_fall &&
+         comparison.p < options.large_significance;
+}
+
 std::optional<int> order_instead(const Model& model, const Signals& signals, const Blocks& blocks,
                                  int order, double impulse_response_rmse,
                                  const SearchOptions& options) {
@@ -47,9 +52,8 @@ std::optional<int> order_instead(const Model& model, const Signals& signals, con
     order = std::min(order + 2, kHighestTried);
     HeldOut next = held_out(of_order(order, rest, part, of_part), part, of_part);
     // Between bodies cross-validation alone decides: a mode more or less is no verdict.
-    const bool better = bent && !taken
-                            ? !worth_it(compared(next, least), options, options.first_least_fall, 1)
-                            : next.rmse() < (1.0 - options.least_fall) * least.rmse();
+    const bool better = bent && !taken ? !outdoes(least, next, options)
+                                       : next.rmse() < (1.0 - options.least_fall) * least.rmse();
     if (!better) continue;
     taken = order;
     least = std::move(next);

@@ -4,10 +4,14 @@
 #include <optional>
 
 #include "services/core/diagnosis/fitting/blocks.hpp"
+#include "services/core/diagnosis/fitting/held_out.hpp"
 #include "services/core/diagnosis/model/model.hpp"
 #include "services/core/diagnosis/selection.hpp"
 
 namespace stillhand::diagnosis {
+
+/// METHOD Eq. DG-88: the one with the bend stays.
+bool outdoes(const HeldOut& bent, const HeldOut& straight, const SearchOptions& options);
 
 /// METHOD Eq. DG-88: a body of too low an order leaves more than it must, and a bend or a memory
 /// between input and output may imitate the modes that it lacks.

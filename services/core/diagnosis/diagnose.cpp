@@ -337,13 +337,6 @@ void take_found(Diagnosis& diagnosis, const Signals& signals, const Blocks& bloc
   keep_what_helps(diagnosis, signals, blocks);
 }
 
-std::optional<int> higher_order(const Diagnosis& diagnosis, const Signals& signals,
-                                const Blocks& blocks) {
-  if (diagnosis.no_model) return std::nullopt;
-  return order_instead(diagnosis.model, signals, blocks, diagnosis.options.order,
-                       diagnosis.baseline.impulse_response_rmse, diagnosis.options.search);
-}
-
 void judge(Diagnosis& diagnosis, const Measurement& working, const Signals& signals,
            const Blocks& blocks) {
   put_in_order(diagnosis, signals, blocks);
@@ -388,12 +381,24 @@ void note_derived(Diagnosis& diagnosis, const Signals& signals) {
   }
 }
 
-Diagnosis at_order(int order, const Measurement& measurement, DiagnoseOptions options) {
-  const int lower = std::exchange(options.order, order);
-  Diagnosis diagnosis = diagnose(measurement, options);
-  diagnosis.notes.push_back("A body of order " + std::to_string(order) +
-                            " explains what one of order " + std::to_string(lower) + " left.");
-  return diagnosis;
+// Eq. DG-88: the whole diagnosis again, if it does not leave more than the search at this order.
+std::optional<Diagnosis> at_higher_order(const Diagnosis& lower, const Measurement& measurement,
+                                         const Signals& signals, const Blocks& blocks) {
+  if (lower.no_model) return std::nullopt;
+  DiagnoseOptions options = lower.options;
+  const std::optional<int> order =
+      order_instead(lower.model, signals, blocks, options.order,
+                    lower.baseline.impulse_response_rmse, options.search);
+  if (!order) return std::nullopt;
+  const int before = std::exchange(options.order, *order);
+  Diagnosis higher = diagnose(measurement, options);
+  if (outdoes(held_out(lower.model, signals, blocks), held_out(higher.model, signals, blocks),
+              options.search)) {
+    return std::nullopt;
+  }
+  higher.notes.push_back("A body of order " + std::to_string(*order) +
+                         " explains what one of order " + std::to_string(before) + " left.");
+  return higher;
 }
 
 }  // namespace
@@ -441,8 +446,8 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
       search(diagnosis.baseline, signals, blocks, diagnosis.options.search, options.for_each, step);
   step("judging");
   take_found(diagnosis, signals, blocks);
-  if (const std::optional<int> order = higher_order(diagnosis, signals, blocks)) {
-    return at_order(*order, measurement, options);
+  if (auto higher = at_higher_order(diagnosis, measurement, signals, blocks)) {
+    return *std::move(higher);
   }
   judge(diagnosis, working, signals, blocks);
   look_at_the_rest(diagnosis, signals, blocks, questions);
