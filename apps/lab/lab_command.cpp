@@ -236,6 +236,9 @@ void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments
                  "input device, such as /dev/input/event3: each of its keys is an emergency stop, "
                  "and so is its loss");
   lab.add_flag("--no-real-time", arguments.ordinary, "do not ask for real-time priority");
+  lab.add_flag("--trace-switches", options.traces_switches,
+               "keep the kernel's trace of which program each processor runs, so that `stillhand "
+               "misses --why` names it; needs the right to write tracefs, as root has it");
 }
 
 // The pegged trial alone, in the motion of the plan.
@@ -284,9 +287,9 @@ void group_options(CLI::App& lab) {
   settings::in_group(
       lab, "Identification of arm and feedthrough at once",
       {"--identify", "--perturb-period-s", "--task", "--held-stick", "--swap-lines"});
-  settings::in_group(
-      lab, "Machines and bus",
-      {"--domain", "--inventory", "--security", "--profiles", "--attach", "--no-real-time"});
+  settings::in_group(lab, "Machines and bus",
+                     {"--domain", "--inventory", "--security", "--profiles", "--attach",
+                      "--no-real-time", "--trace-switches"});
 }
 
 }  // namespace

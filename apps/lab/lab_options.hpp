@@ -33,8 +33,9 @@ struct LabOptions {
   std::string vehicle;            ///< that the stick drives in B and C; empty: none
   std::filesystem::path devices;  ///< which device serves which signal; empty: the simulated rig
   bool headless = false;
-  bool video = false;     ///< headless display writes DIR/screen.avi
-  bool real_time = true;  ///< ask for a real-time scheduling policy
+  bool video = false;            ///< headless display writes DIR/screen.avi
+  bool real_time = true;         ///< ask for a real-time scheduling policy
+  bool traces_switches = false;  ///< of the kernel, for `stillhand misses --why`
   Operator who = Operator::kSimulated;
   std::filesystem::path gamepad;  ///< input device in place of the mouse; empty: the mouse
   std::int64_t subject = 0;  ///< of the population, under the session's seed; 0: that of `config`

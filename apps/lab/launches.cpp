@@ -24,6 +24,7 @@ Arguments shared_words(const LabOptions& options, const Hosts& hosts, const Plac
                   "--profiles", place.profiles.string(),
                   "--config",   place.config.string()};
   if (options.real_time) words.push_back("--real-time");
+  if (options.traces_switches) words.push_back("--trace-switches");
   if (!place.security.empty()) words.insert(words.end(), {"--security", place.security.string()});
   return words;
 }

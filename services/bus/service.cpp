@@ -73,6 +73,7 @@ struct Service::Reporting {
 Service::Service(ServiceOptions options, Stop& stop)
     : options_(std::move(options)),
       ticks_evenly_(options_.service != topics::kEndsLast),
+      stall_watch_(options_.traces_switches),
       stop_(stop) {
   Bus::Options bus_options;
   bus_options.service = options_.service;
@@ -218,6 +219,8 @@ int run_service(const std::string& name, int argc, char** argv,
       ->check(settings::check_name);
   cli.add_flag("--real-time", options.real_time,
                "request real-time priority: SCHED_FIFO, with --security SCHED_RR");
+  cli.add_flag("--trace-switches", options.traces_switches,
+               "keep the kernel's trace of which program each processor runs, where allowed");
   cli.add_flag(
       "--one-session", options.one_session,
       "end together with the session, so that a service manager starts it for the next one");

@@ -32,6 +32,7 @@ struct ServiceOptions {
   std::filesystem::path config;    ///< folder of the settings files
   std::filesystem::path security;  ///< see Bus::Options
   bool real_time = false;          ///< request a real-time scheduling policy
+  bool traces_switches = false;    ///< keep the kernel's trace of its switches (SwitchTrace)
   bool serialized = false;         ///< see Bus::Options
   bool answers_replay = false;     ///< see Bus::Options
   std::string experiment;          ///< its participant, see Bus::Options; empty: any

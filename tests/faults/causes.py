@@ -131,7 +131,7 @@ CAUSES = [(stop, "^stopped by a signal"), (debugger, "^stopped by a debugger"),
 
 def struck(cause, folder):
     """The longest lateness of sensing in a session in which the cause strikes it: (milliseconds, what is said of it)."""
-    lab = LabProcess(folder / "run", *quick_session(folder / "config"), "--no-real-time",
+    lab = LabProcess(folder / "run", *quick_session(folder / "config"), "--no-real-time", "--trace-switches",
                      environment=dict(os.environ, LD_PRELOAD=str(BUILD / "tests" / "libbusy_on_signal.so")))
     try:
         lab.wait_for_tick(1, 2, 60)

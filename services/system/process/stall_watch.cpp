@@ -88,7 +88,8 @@ std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const Thread
   }
 }
 
-StallWatch::StallWatch() {
+StallWatch::StallWatch(bool traces_switches) {
+  if (traces_switches) switches_.emplace();
   const sigset_t set = continue_signal();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
@@ -131,12 +132,13 @@ ThreadAccount StallWatch::account() {
 // On a machine that is too busy, reading for each silence would make it busier.
 Occupation StallWatch::meanwhile(const Silence& silence) {
   const std::int64_t now_ns = monotonic_ns();
-  if (silence.processor < 0 || silence.until_ns - silence.from_ns < kWorthATrace_ns) return {};
+  if (!switches_ || silence.processor < 0 || silence.until_ns - silence.from_ns < kWorthATrace_ns)
+    return {};
   if (asked_ns_ != 0 && now_ns - asked_ns_ < kBetweenTraces_ns) return {};
   asked_ns_ = now_ns;
   const OrdinaryWhile ordinary;
-  return switches_.of(silence.processor, thread_.load(std::memory_order_relaxed), silence.from_ns,
-                      silence.until_ns);
+  return switches_->of(silence.processor, thread_.load(std::memory_order_relaxed), silence.from_ns,
+                       silence.until_ns);
 }
 
 std::optional<Stall> StallWatch::step() {

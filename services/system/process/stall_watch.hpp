@@ -45,7 +45,8 @@ class StallWatch {
  public:
   /// Blocks SIGCONT for this thread and those it starts, so that step() can count it; a thread that
   /// does not block it takes it away.
-  StallWatch();
+  /// @param traces_switches  also asks SwitchTrace who had the processor
+  explicit StallWatch(bool traces_switches = false);
   ~StallWatch();
   StallWatch(const StallWatch&) = delete;
   StallWatch& operator=(const StallWatch&) = delete;
@@ -71,7 +72,7 @@ class StallWatch {
   std::array<ThreadAccount, 64> accounts_{};  // newest first, 6 s
   std::int64_t continued_ = 0;
   int schedstat_ = -1;  // kept open: two calls a look
-  SwitchTrace switches_;
+  std::optional<SwitchTrace> switches_;
   std::int64_t asked_ns_ = 0;  // the trace
 };
 

@@ -80,7 +80,7 @@ class Watched {
     }
   }
 
-  StallWatch watch_;
+  StallWatch watch_{true};
   std::atomic<bool> ends_{false};
   std::atomic<void (*)()> next_{nullptr};
   std::thread thread_;
