@@ -12,7 +12,8 @@ namespace stillhand::diagnosis {
 namespace {
 
 constexpr double kLongResponse = 0.98;  // a long response fits some noise, too: one per cent
-constexpr int kHighestTried = 8;        // more modes than a body has within the band of a ride
+constexpr double kBeyondLinear = 0.9;  // below it no body without the bend gets, whatever its order
+constexpr int kHighestTried = 8;       // more modes than a body has within the band of a ride
 
 // Memoryless or with memory, of what passes from input to output.
 bool bends(const Effect& effect) {
@@ -47,6 +48,7 @@ std::optional<int> order_instead(const Model& model, const Signals& signals, con
   const Blocks of_part = part.size() == signals.size() ? blocks : make_blocks(part);
   HeldOut least = held_out(model, part, of_part);
   if (!bent && !(impulse_response_rmse < kLongResponse * least.rmse())) return std::nullopt;
+  if (bent && least.rmse() < kBeyondLinear * impulse_response_rmse) return std::nullopt;
   std::optional<int> taken;
   while (order < kHighestTried) {
     order = std::min(order + 2, kHighestTried);
