@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -42,7 +43,10 @@ struct Fields {
     return found;
   }
   pid_t number(std::string_view mark) {
-    return static_cast<pid_t>(std::atoi(std::string(cut(mark)).c_str()));
+    const std::string_view text = cut(mark);
+    pid_t value = -1;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
   }
 };
 
