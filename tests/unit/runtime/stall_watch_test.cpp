@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <iostream>
 #include <string>
 #include <thread>
 
@@ -183,6 +184,7 @@ TEST(StallWatchTest, NamesTheProgramThatHadTheProcessor) {
   std::string why;
   EXPECT_TRUE(support::eventually([&] {
     why = why_behind_another();
+    std::cout << why << '\n';
     return why.find("; unit_runtime had it for ") != std::string::npos;
   })) << why;
   EXPECT_TRUE(why.starts_with("waited ")) << why;
