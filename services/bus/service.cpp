@@ -24,7 +24,8 @@
 namespace stillhand::runtime {
 namespace {
 
-constexpr std::chrono::milliseconds kStallPeriod{100};  // StallWatch::step()
+constexpr std::chrono::milliseconds kLookPeriod{20};  // StallWatch::look()
+constexpr int kLooks = 5;                             // for each StallWatch::step()
 
 stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
   switch (kind) {
@@ -148,7 +149,10 @@ void Service::note_stalls(const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
-  while (!wake.wait_for(lock, stop, kStallPeriod, [&] { return stop.stop_requested(); })) {
+  for (int turn = 1; !wake.wait_for(lock, stop, kLookPeriod, [&] { return stop.stop_requested(); });
+       ++turn) {
+    stall_watch_.look();
+    if (turn % kLooks != 0) continue;
     const std::optional<Stall> stall = stall_watch_.step();
     if (!stall || stall->why.empty()) continue;
     note_event(stillhand_msgs::EVENT_CYCLE_MISSED, stall->why.c_str(), 1e6 * stall->late_s,

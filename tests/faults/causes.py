@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether `stillhand misses --why` names why a process was late: seven causes, known from outside.
+"""Whether `stillhand misses --why` names why a process was late: ten causes, known from outside.
 
 Usage: STILLHAND_BUILD=build /usr/bin/python3 tests/faults/causes.py [--only CAUSE]
 
 Needs root, for the kernel's trace of its switches, for real-time priority and for control groups of version 1, and a
-machine without other work. A session each: three minutes.
+machine without other work. A session each: four minutes.
 """
 import argparse
 import ctypes
@@ -12,6 +12,7 @@ import json
 import os
 import pathlib
 import re
+import select
 import signal
 import subprocess
 import sys
@@ -25,7 +26,8 @@ from lab_process import BUILD, LabProcess, hold, quick_session, running  # noqa:
 
 STANDS_S = 0.08
 SEEN_S = 2.0
-WORK = signal.SIGRTMIN + 8  # busy_on_signal.cpp
+WORK, WRITE, READ_PAGES, READ = (signal.SIGRTMIN + number for number in (8, 9, 10, 11))  # busy_on_signal.cpp
+MAPPED_BYTES = 1 << 28
 GROUPS = pathlib.Path("/sys/fs/cgroup")
 LIBC = ctypes.CDLL(None, use_errno=True)
 PTRACE_SEIZE, PTRACE_INTERRUPT, PTRACE_DETACH = 0x4206, 0x4207, 17
@@ -90,6 +92,36 @@ def our_own(_victim, other):
     os.sched_setscheduler(other.thread, os.SCHED_OTHER, os.sched_param(0))
 
 
+def written(victim, _other):
+    """A pipe that nobody reads meanwhile."""
+    pipe = os.open(os.environ["STILLHAND_PIPE"], os.O_RDWR | os.O_NONBLOCK)
+    tgkill(victim.thread, victim.pid, WRITE)
+    hold(STANDS_S)
+    left = 1 << 20
+    while left > 0:
+        select.select([pipe], [], [])
+        left -= len(os.read(pipe, left))
+    os.close(pipe)
+
+
+def pages(victim, _other):
+    """A file that is mapped, and on the disk alone."""
+    with open(os.environ["STILLHAND_MAPS"], "rb") as file:
+        os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
+    tgkill(victim.thread, victim.pid, READ_PAGES)
+    hold(2 * STANDS_S)
+
+
+def unanswered(victim, _other):
+    """A pipe into which nobody writes meanwhile."""
+    pipe = os.open(os.environ["STILLHAND_PIPE"], os.O_RDWR)
+    tgkill(victim.thread, victim.pid, READ)
+    hold(STANDS_S)
+    os.write(pipe, b".")
+    hold(STANDS_S)
+    os.close(pipe)
+
+
 class Group:
     def __init__(self, kind):
         self.folder = GROUPS / kind / "stillhand-causes"
@@ -125,8 +157,20 @@ def frozen(victim, _other):
 
 
 CAUSES = [(stop, "^stopped by a signal"), (debugger, "^stopped by a debugger"),
-          (real_time_program, "waited .*; compiler had it"),          (work, "^worked for"), (our_own, "waited .*; stillhand-cance had it"), (quota, "quota of processor time"),
-          (frozen, "freezer")]
+          (real_time_program, "waited .*; compiler had it"),
+          (work, "^worked for"), (our_own, "waited .*; stillhand-cance had it"), (quota, "quota of processor time"),
+          (frozen, "freezer"), (written, r"^blocked in write\(\)"), (pages, "pages of memory from a disk"), (unanswered, r"^blocked in read\(\)")]
+
+
+def prepare(folder):
+    """The files of written(), unanswered() and pages()."""
+    os.environ["STILLHAND_PIPE"] = str(folder / "pipe")
+    os.mkfifo(folder / "pipe")
+    os.environ["STILLHAND_MAPS"] = str(folder / "mapped")
+    with (folder / "mapped").open("wb") as file:
+        for _ in range(MAPPED_BYTES >> 20):
+            file.write(bytes(1 << 20))
+        os.fsync(file.fileno())
 
 
 def struck(cause, folder):
@@ -160,6 +204,7 @@ def main():
         if options.only not in (None, cause.__name__):
             continue
         with tempfile.TemporaryDirectory(prefix="stillhand-") as name:
+            prepare(pathlib.Path(name))
             gap_ms, why = struck(cause, pathlib.Path(name))
         verdict = "not known" if not why else "right" if re.search(words, why) else "WRONG"
         print(f"{cause.__name__:18} {gap_ms:6.1f} ms  {verdict:9} {why or ''}", flush=True)

@@ -5,11 +5,13 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <utility>
 
 #include "services/system/process/clock.hpp"
@@ -20,6 +22,8 @@ namespace {
 
 constexpr std::int64_t kLeast_ns = 5'000'000;
 constexpr const char* kHeldBack = "held back, as by its group's quota of processor time";
+// Later than any wait for the next sample; kLooks of note_stalls() see it in any silence of 35 ms.
+constexpr std::int64_t kLasts_ns = 12'000'000;
 constexpr std::int64_t kWorthATrace_ns = 20'000'000;
 constexpr std::int64_t kBetweenTraces_ns = 2'000'000'000;
 
@@ -28,6 +32,38 @@ sigset_t continue_signal() {
   sigemptyset(&set);
   sigaddset(&set, SIGCONT);
   return set;
+}
+
+// Calls that wait for something else than the next sample: that one is a futex, a poll or a
+// recvmsg.
+std::string_view name_of(long call) {
+  switch (call) {
+    case SYS_read:
+      return "read()";
+    case SYS_write:
+    case SYS_writev:
+    case SYS_pwrite64:
+      return "write()";
+    case SYS_sendto:
+    case SYS_sendmsg:
+      return "sendmsg()";
+    case SYS_fsync:
+    case SYS_fdatasync:
+      return "fsync()";
+    case SYS_openat:
+      return "open()";
+    case SYS_ioctl:
+      return "ioctl()";
+    default:
+      return {};
+  }
+}
+
+// "1 0x3 ..." in call 1; "running"; "-1 ..." in none.
+std::string_view call_of(pid_t thread) {
+  std::ifstream file("/proc/self/task/" + std::to_string(thread) + "/syscall");
+  long call = -1;
+  return file >> call ? name_of(call) : std::string_view{};
 }
 
 std::string milliseconds(std::int64_t ns) {
@@ -47,7 +83,7 @@ std::string taken_by(const Occupation& meanwhile, std::int64_t least_ns) {
 
 std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const ThreadAccount& earlier,
                        const ThreadAccount& before, const ThreadAccount& after,
-                       const Occupation& meanwhile) {
+                       const Occupation& meanwhile, std::string_view call) {
   if (before.at_ns == 0 || before.at_ns > from_ns || after.at_ns < until_ns) return {};
   const std::int64_t silent_ns = until_ns - from_ns;
   // The share of the time outside of the silence that the thread usually spends so.
@@ -69,6 +105,7 @@ std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const Thread
   }
   if (ran_ns > silent_ns / 2) return "worked for " + milliseconds(std::min(ran_ns, silent_ns));
   if (after.continued > before.continued) return "stopped by a signal";
+  if (!call.empty()) return "blocked in " + std::string(call);
   if (const std::int64_t pages = after.disk_pages - before.disk_pages; pages > 0) {
     return "waited for " + std::to_string(pages) + " pages of memory from a disk";
   }
@@ -101,7 +138,7 @@ StallWatch::~StallWatch() {
 void StallWatch::beat() noexcept {
   const std::int64_t now_ns = monotonic_ns();
   const int processor = sched_getcpu();
-  const std::int64_t from_ns = std::exchange(last_ns_, now_ns);
+  const std::int64_t from_ns = last_ns_.exchange(now_ns, std::memory_order_relaxed);
   const int before = std::exchange(last_processor_, processor);
   if (from_ns == 0) {
     thread_.store(gettid(), std::memory_order_relaxed);
@@ -141,6 +178,13 @@ Occupation StallWatch::meanwhile(const Silence& silence) {
                        silence.until_ns);
 }
 
+void StallWatch::look() {
+  const std::int64_t last_ns = last_ns_.load(std::memory_order_relaxed);
+  if (last_ns == 0 || last_ns == looked_at_ns_ || monotonic_ns() - last_ns < kLasts_ns) return;
+  looked_at_ns_ = last_ns;
+  call_ = call_of(thread_.load(std::memory_order_relaxed));
+}
+
 std::optional<Stall> StallWatch::step() {
   const pid_t thread = thread_.load(std::memory_order_relaxed);
   if (thread == 0) return std::nullopt;
@@ -164,7 +208,8 @@ std::optional<Stall> StallWatch::step() {
   if (before != accounts_.end()) {
     const ThreadAccount earlier = before + 1 == accounts_.end() ? ThreadAccount{} : before[1];
     stall.why = why_silent(longest.from_ns, longest.until_ns, earlier, *before, accounts_.front(),
-                           meanwhile(longest));
+                           meanwhile(longest),
+                           longest.from_ns == looked_at_ns_ ? call_ : std::string_view{});
   }
   return stall;
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "services/system/process/switch_trace.hpp"
 
@@ -34,9 +35,10 @@ struct Stall {
 /// @param earlier  the account before `before`: the usual growth
 /// @param before   the last one before the silence
 /// @param after    the first one behind it
+/// @param call     the system call that it was in, where look() saw one: "write()"
 std::string why_silent(std::int64_t from_ns, std::int64_t until_ns, const ThreadAccount& earlier,
                        const ThreadAccount& before, const ThreadAccount& after,
-                       const Occupation& meanwhile = {});
+                       const Occupation& meanwhile = {}, std::string_view call = {});
 
 /// Notices that a thread stood still, and says why.  Needs no rights: a process may read its own
 /// accounts.  Who had the processor is known where SwitchTrace is to be had.  Costs the thread one
@@ -53,7 +55,9 @@ class StallWatch {
 
   /// From the thread that is watched, once a turn.  Never locks or allocates.
   void beat() noexcept;
-  /// From another thread, ten times a second.
+  /// From another thread, fifty times a second: sees a system call that lasts, proc_pid_syscall(5).
+  void look();
+  /// From the same thread as look(), ten times a second.
   /// @return a silence of 5 ms or more that ended since the call before: the longest
   std::optional<Stall> step();
 
@@ -66,14 +70,16 @@ class StallWatch {
   [[nodiscard]] Occupation meanwhile(const Silence& silence);
 
   std::atomic<pid_t> thread_{0};
-  std::int64_t last_ns_ = 0;  // of the thread that is watched
-  int last_processor_ = -1;   // likewise
+  std::atomic<std::int64_t> last_ns_{0};  // written by the thread that is watched
+  int last_processor_ = -1;               // of that thread
   boost::lockfree::spsc_queue<Silence, boost::lockfree::capacity<16>> silences_;
   std::array<ThreadAccount, 64> accounts_{};  // newest first, 6 s
   std::int64_t continued_ = 0;
   int schedstat_ = -1;  // kept open: two calls a look
   std::optional<SwitchTrace> switches_;
-  std::int64_t asked_ns_ = 0;  // the trace
+  std::int64_t asked_ns_ = 0;      // the trace
+  std::int64_t looked_at_ns_ = 0;  // begin of the silence that look() saw
+  std::string_view call_;          // of that silence
 };
 
 }  // namespace stillhand::runtime

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/system/process/stall_watch.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <iostream>
+#include <iterator>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "services/system/process/clock.hpp"
 #include "tests/support/wait.hpp"
@@ -27,8 +31,8 @@ ThreadAccount at(std::int64_t ms, std::int64_t ran, std::int64_t waited, std::in
 
 /// Of a silence from 210 to 280 ms, with accounts at 100, 200 and 300 ms; the thread usually works
 /// for a tenth of its time.
-std::string why(const ThreadAccount& after) {
-  return why_silent(210 * kMs, 280 * kMs, at(100, 10, 1), at(200, 20, 2), after);
+std::string why(const ThreadAccount& after, std::string_view call = {}) {
+  return why_silent(210 * kMs, 280 * kMs, at(100, 10, 1), at(200, 20, 2), after, {}, call);
 }
 
 TEST(WhySilentTest, NamesWhatGrewBeyondItsUsualGrowth) {
@@ -36,6 +40,9 @@ TEST(WhySilentTest, NamesWhatGrewBeyondItsUsualGrowth) {
   EXPECT_EQ(why(at(300, 93, 2)), "worked for 70 ms");
   EXPECT_EQ(why(at(300, 23, 2, 4)), "waited for 4 pages of memory from a disk");
   EXPECT_EQ(why(at(300, 23, 2, 0, 1)), "stopped by a signal");
+  EXPECT_EQ(why(at(300, 23, 2, 1), "write()"), "blocked in write()");
+  EXPECT_EQ(why(at(300, 93, 2), "write()"), "worked for 70 ms");
+  EXPECT_EQ(why(at(300, 23, 2, 0, 1), "write()"), "stopped by a signal");
 }
 
 TEST(WhySilentTest, DoesNotGuess) {
@@ -59,7 +66,10 @@ class Watched {
   /// It does this once, between two beats.
   void once(void (*what)()) { next_ = what; }
   std::optional<Stall> after_a_while() {
-    sleep_until_ns(monotonic_ns() + 100 * kMs);
+    for (int look = 0; look < 5; ++look) {
+      sleep_until_ns(monotonic_ns() + 20 * kMs);
+      watch_.look();
+    }
     return watch_.step();
   }
   /// The first silence of at least this.
@@ -115,6 +125,33 @@ TEST(StallWatchTest, ASleepHasNoReasonOfItsOwn) {
   const auto stall = sut.stall(0.4);
   ASSERT_TRUE(stall);
   EXPECT_EQ(stall->why, "");
+}
+
+// A pipe that nobody reads for 200 ms.
+void write_to_a_full_pipe() {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const std::vector<char> more_than_it_holds(2 * fcntl(ends[1], F_GETPIPE_SZ));
+  std::thread reader([&] {
+    sleep_until_ns(monotonic_ns() + 200 * kMs);
+    std::vector<char> taken(more_than_it_holds.size());
+    for (std::size_t got = 0; got < taken.size();)
+      got += static_cast<std::size_t>(read(ends[0], taken.data(), taken.size()));
+  });
+  EXPECT_EQ(write(ends[1], more_than_it_holds.data(), more_than_it_holds.size()),
+            std::ssize(more_than_it_holds));
+  reader.join();
+  for (const int end : ends) close(end);
+}
+
+TEST(StallWatchTest, NamesTheCallThatBlocked) {
+  Watched sut;
+  sut.once(&write_to_a_full_pipe);
+  const auto stall = sut.stall(0.15);
+  ASSERT_TRUE(stall);
+  if (!stall->why.starts_with("waited ")) {  // next to others' work, for a processor
+    EXPECT_EQ(stall->why, "blocked in write()");
+  }
 }
 
 /// Ends with 0 when a stop of the whole process is named.
