@@ -7,11 +7,9 @@
 
 #include "apps/close_the_loop/control_laws.hpp"
 #include "apps/close_the_loop/recorded/replay.hpp"
-#include "apps/libraries/measurement/grid.hpp"
+#include "apps/close_the_loop/repair/recorded_trial.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/core/contract/units.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
-#include "services/core/diagnosis/working_set.hpp"
 #include "services/core/human_operator/fast_error.hpp"
 #include "services/core/population/population.hpp"
 
@@ -23,59 +21,11 @@ using cancellation::ControlModel;
 using diagnosis::Effect;
 using diagnosis::Model;
 
-constexpr std::size_t kMostValues = 60'000'000;
 constexpr std::size_t kSeeds = 10;
-
-template <typename Law>
-bool is_body(const Effect& effect) {
-  return std::holds_alternative<Law>(diagnosis::effect_kind(effect.kind).body_role(effect));
-}
-
-// A trial does not go on with these.
-bool is_past(const Effect& effect) {
-  return diagnosis::effect_kind(effect.kind).time_only(effect) && !is_body<control::Gain>(effect) &&
-         !is_body<control::Waves>(effect);
-}
 
 Model without(Model model, const Effect& effect) {
   std::erase_if(model.effects,
                 [&](const Effect& each) { return diagnosis::is_same(each, effect); });
-  return model;
-}
-
-diagnosis::Stretch longest(const std::vector<diagnosis::Stretch>& stretches) {
-  return *std::ranges::max_element(stretches, {},
-                                   [](const auto& each) { return each.end - each.first; });
-}
-
-// A trial, and the same at the rate of the diagnosis.
-struct Trial {
-  diagnosis::Measurement record;  // 1 kHz
-  diagnosis::Signals signals;
-};
-
-Trial trial_of(diagnosis::Measurement record, const Model& model) {
-  const std::size_t factor = diagnosis::rate_factor(record, model.rate_hz);
-  diagnosis::Signals signals(factor > 1 ? diagnosis::decimated(record, factor) : record,
-                             model.inputs, model.output);
-  return {std::move(record), std::move(signals)};
-}
-
-diagnosis::Measurement record_of(const TrialRun& run) {
-  return measurement::on_grid(run.measured, kMostValues);
-}
-
-// One value a tick of the trial's stretch, less than a sample of the diagnosis short of its end.
-std::vector<double> at_1_khz(const std::vector<double>& values, const Trial& trial) {
-  return at_control_rate(values, longest(trial.signals.stretches()), trial.signals.rate_hz());
-}
-
-// Of what the hand feels in another trial of the session.
-Model felt(Model model, const diagnosis::Signals& pegged) {
-  std::erase_if(model.effects, [](const Effect& each) {
-    return is_past(each) || is_body<control::NotFelt>(each);
-  });
-  for (Effect& effect : model.effects) effect = continued(effect, pegged);
   return model;
 }
 
@@ -155,41 +105,6 @@ double where(double value, double low, double high, const std::function<double(d
   return std::sqrt(low * high);
 }
 
-// The trial without its feedthrough.
-Course still(const diagnosis::Measurement& record) {
-  const diagnosis::Stretch stretch = longest(record.stretches);
-  Course out;
-  out.first_tick = static_cast<Tick>(std::llround(stretch.start_s * kControlRateHz));
-  out.sensed = sensed(record, stretch);
-  const auto target = record.find("x_r")->values.begin();
-  out.target_m.assign(target + static_cast<std::ptrdiff_t>(stretch.first),
-                      target + static_cast<std::ptrdiff_t>(stretch.end));
-  out.force_n.assign(out.target_m.size(), 0.0);
-  return out;
-}
-
-// Acts on the hand next to the body: a hand that stiffens does not change it.
-bool is_next_to_body(const Effect& effect) {
-  const auto role = diagnosis::effect_kind(effect.kind).body_role(effect);
-  const auto* path = std::get_if<control::Path>(&role);
-  return (path != nullptr && !path->through_body) || std::holds_alternative<control::Waves>(role) ||
-         std::holds_alternative<control::Hysteresis>(role);
-}
-
-// w_0 f + w_1 f'/Omega, as the canceller follows it.
-std::vector<double> followed_force(const std::vector<double>& f, double rate_hz,
-                                   const cancellation::AdaptiveGain::Pair& weights) {
-  constexpr double kOmega_rad_s = kTwoPi * 1.2;  // cancellation, Eq. CC-10
-  std::vector<double> out;
-  for (std::size_t n = 0; n < f.size(); ++n) {
-    const std::size_t before = n > 0 ? n - 1 : n;
-    const std::size_t after = std::min(n + 1, f.size() - 1);
-    const double rate = (f[after] - f[before]) * rate_hz / static_cast<double>(after - before);
-    out.push_back(weights[0] * f[n] + weights[1] * rate / kOmega_rad_s);
-  }
-  return out;
-}
-
 // A rig or a person without the effect, and what a canceller then knows; and one that knows it.
 struct Case {
   Model body;
@@ -204,13 +119,13 @@ class Repair {
       : result_(result),
         options_(options),
         verdict_(result.verdict()),
-        pegged_(trial_of(advanced(record_of(result.trial("I")), options.diagnose.output,
-                                  verdict_.cell_is_late ? verdict_.latency->cell_s : 0.0),
-                         body())),
+        pegged_(recorded_trial(advanced(record_of(result.trial("I")), options.diagnose.output,
+                                        verdict_.cell_is_late ? verdict_.latency->cell_s : 0.0),
+                               body())),
         carried_(verdict_.carried()),
         drive_(drive_of(verdict_, options.declared)) {
     for (const char* label : {"B", "C'"}) {
-      courses_.push_back(trial_of(record_of(result.trial(label)), body()));
+      courses_.push_back(recorded_trial(record_of(result.trial(label)), body()));
     }
     find_unexplained();
     fit_person();
@@ -234,7 +149,6 @@ class Repair {
   [[nodiscard]] ControlModel identified_without(const Model& mended) const;
   /// That knows this effect alone.
   [[nodiscard]] ControlModel knows(const Finding& finding) const;
-  [[nodiscard]] Course course_of(const Trial& trial, const Model& body) const;
   /// Seed by seed.
   [[nodiscard]] std::vector<double> errors(const Model& body, const Drive& drive,
                                            const ControlModel* model) const;
@@ -244,13 +158,13 @@ class Repair {
   const LoopResult& result_;
   const LoopOptions& options_;
   const Verdict& verdict_;
-  Trial pegged_;
+  RecordedTrial pegged_;
   diagnosis::CarriedModel carried_;
   Drive drive_;
   PersonModel person_;
   cancellation::AdaptiveGain::Pair track_{1.0, 0.0};  // of the tracking hand's body, Eq. CL-12
   std::vector<double> unexplained_n_;
-  std::vector<Trial> courses_;
+  std::vector<RecordedTrial> courses_;
 };
 
 void Repair::find_unexplained() {
@@ -268,23 +182,6 @@ void Repair::find_unexplained() {
                          rms(pegged_.signals.at(body().inputs.front()).values);
   for (double& each : left) each = quieter * (each - mean / count);
   unexplained_n_ = at_1_khz(left, pegged_);
-}
-
-Course Repair::course_of(const Trial& trial, const Model& body) const {
-  Course out = still(trial.record);
-  const Model all = felt(body, pegged_.signals);
-  Model inner = all;
-  std::erase_if(inner.effects, is_next_to_body);
-  std::vector<double> force = diagnosis::free_run(all, trial.signals).prediction;
-  std::vector<double> of_body = diagnosis::free_run(inner, trial.signals).prediction;
-  for (double& each : of_body) each -= body.body.offset;
-  const std::vector<double> stiffened = followed_force(of_body, trial.signals.rate_hz(), track_);
-  for (std::size_t n = 0; n < force.size(); ++n) {
-    force[n] += stiffened[n] - of_body[n] - body.body.offset;
-  }
-  out.force_n = at_1_khz(force, trial);
-  out.force_n.resize(std::min(out.force_n.size(), out.sensed.size()));
-  return out;
 }
 
 double Repair::mean_error(const PersonModel& person, const Course& course,
@@ -313,7 +210,7 @@ void Repair::fit_person() {
       }
     }
   }
-  const Course quiet = still(record_of(result_.trial("A")));
+  const Course quiet = still_course(record_of(result_.trial("A")));
   person_.who.crossover_hz = crossover_at_rest_hz(result_.trial("A"), person_.who);
   person_.who.remnant_ratio =
       1.0 / where(result_.trial("A").metrics.rms_error_mm, 10.0, 1000.0, [&](double over) {
@@ -331,7 +228,7 @@ void Repair::fit_person() {
     }
     return person;
   };
-  const Course moving = course_of(courses_.front(), body());
+  const Course moving = course_of(courses_.front(), body(), pegged_.signals, track_);
   person_ = stiffer(where(result_.trial("B").metrics.rms_error_mm, 0.4, 2.5, [&](double factor) {
     return mean_error(stiffer(factor), moving, unexplained_n_);
   }));
@@ -340,7 +237,8 @@ void Repair::fit_person() {
 std::vector<double> Repair::errors(const Model& body, const Drive& drive,
                                    const ControlModel* model) const {
   std::vector<Course> courses;
-  for (const Trial& each : courses_) courses.push_back(course_of(each, body));
+  for (const RecordedTrial& each : courses_)
+    courses.push_back(course_of(each, body, pegged_.signals, track_));
   std::vector<double> out(kSeeds);
   options_.diagnose.for_each(kSeeds, [&](std::size_t s) {
     out[s] = tracking_error_mm(person_, courses[s % courses.size()], drive, model, unexplained_n_,
