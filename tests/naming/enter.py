@@ -5,8 +5,8 @@
     STILLHAND_BUILD=build python3 tests/naming/enter.py stillhand RECORDINGS ENTRY
     python3 tests/naming/enter.py narx RECORDINGS ENTRY
 
-`stillhand` names and predicts (`diagnose`, `predict`); `narx`, a polynomial difference model from a_y, and `fir`, a long
-impulse response, predict alone. A tool sees rec_0001_train.csv, and of rec_0001_test.csv every column but the force.
+`stillhand` names and predicts (`diagnose`, `predict`). Three predict alone, from a_y: `narx`, a polynomial difference
+model, `fir`, a long impulse response, and `octave`, the state space of octave-control (`moen4`, SLICOT). A tool sees rec_0001_train.csv, and of rec_0001_test.csv every column but the force.
 """
 import argparse
 import json
@@ -60,6 +60,33 @@ def on_grid(path, column):
     return grid, numpy.interp(grid, rows["t"], rows[column])
 
 
+# Order and offset by the script; the last quarter chooses.  moen4 without an order asks for one.
+MOEN4 = """
+pkg load control
+d = dlmread('train.csv'); unseen = dlmread('test.csv'); offset = mean(d(:,2)); d(:,2) -= offset;
+part = floor(0.75 * rows(d)); least = Inf;
+for n = 2:2:12
+  model = moen4(iddata(d(1:part,2), d(1:part,1), STEP), n, 's', 30);
+  left = std(d(part+1:end,2) - lsim(model, d(part+1:end,1)));
+  if left < least, least = left; order = n; end
+end
+model = moen4(iddata(d(:,2), d(:,1), STEP), order, 's', 30);
+dlmwrite('out.csv', offset + lsim(model, unseen), 'precision', 8);
+"""
+
+
+def octave(train, test, entry, name):
+    (_, u), (_, y) = on_grid(train, "a_y"), on_grid(train, "f")
+    time, unseen = on_grid(test, "a_y")
+    with tempfile.TemporaryDirectory() as holder:
+        folder = pathlib.Path(holder)
+        numpy.savetxt(folder / "train.csv", numpy.column_stack([u, y]), delimiter=",")
+        numpy.savetxt(folder / "test.csv", unseen)
+        subprocess.run(["octave-cli", "--no-gui", "--quiet", "--eval", MOEN4.replace("STEP", str(1.0 / RATE_HZ))],
+                       cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        write_force(entry / f"{name}.csv", time, numpy.loadtxt(folder / "out.csv"))
+
+
 def peer(kind):
     def enter(train, test, entry, name):
         (_, u), (_, y) = on_grid(train, "a_y"), on_grid(train, "f")
@@ -70,7 +97,7 @@ def peer(kind):
     return enter
 
 
-TOOLS = {"stillhand": stillhand, "narx": peer(Narx), "fir": peer(ImpulseResponse)}
+TOOLS = {"stillhand": stillhand, "octave": octave, "narx": peer(Narx), "fir": peer(ImpulseResponse)}
 
 
 def main():
