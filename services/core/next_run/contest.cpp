@@ -105,6 +105,26 @@ double price_of(const MatrixXd& information, const VectorXd& of_a_sample) {
   return eigen.eigenvalues().unaryExpr([](double x) { return std::log1p(std::max(x, 0.0)); }).sum();
 }
 
+// Where a stretch begins to be judged, the noise model of so many taps lacks the past that makes
+// its error one of the noise's size: those rows are left out.
+template <typename Columns>
+void leave_out_starts(const Signals& signals, std::size_t taps, Columns& columns) {
+  for (const diagnosis::Stretch& stretch : signals.stretches()) {
+    std::size_t first = stretch.first;
+    while (first < stretch.end && !(signals.weight()[first] > 0.0)) ++first;
+    const std::size_t end = std::min(stretch.end, first + std::max<std::size_t>(taps, 1) - 1);
+    columns.middleRows(static_cast<Index>(first), static_cast<Index>(end - first)).setZero();
+  }
+}
+
+diagnosis::Linearisation judged_line(const Model& model, const Signals& signals, std::size_t taps) {
+  diagnosis::Linearisation line = diagnosis::linearised(model, signals);
+  if (!line.finite) return line;
+  leave_out_starts(signals, taps, line.residual);
+  leave_out_starts(signals, taps, line.jacobian);
+  return line;
+}
+
 double count_of(const Signals& signals) {
   double samples = 0.0;
   for (const double weight : signals.weight()) samples += weight;
@@ -171,7 +191,7 @@ void Contest::weigh(const Signals& judged) {
   variance_ = std::numeric_limits<double>::infinity();
   for (Candidate& candidate : candidates_) {
     diagnosis::fit(candidate.model, judged, blocks);
-    const diagnosis::Linearisation line = diagnosis::linearised(candidate.model, judged);
+    const diagnosis::Linearisation line = judged_line(candidate.model, judged, taps_.size());
     if (!line.finite) {
       throw ConfigError("candidate " + name_of(candidate), "a run that is not finite",
                         "a model that was fitted to the recording");
@@ -214,7 +234,7 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
     const VectorXd moved = diagnosis::packed(at) - start;
     return moved.dot(information * moved);
   };
-  diagnosis::Linearisation line = diagnosis::linearised(model, run);
+  diagnosis::Linearisation line = judged_line(model, run, taps_.size());
   if (!line.finite) {
     const auto size = static_cast<Index>(run.size());
     const double each = std::sqrt(kNeverFits * variance_ / static_cast<double>(size));
@@ -244,8 +264,9 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
       diagnosis::unpack(numbers + inverse(damped) * downhill, next);
       if (!is_stable(next.body)) continue;
       diagnosis::FreeRun free;
-      const VectorXd residual = diagnosis::residual_of(next, run, free);
+      VectorXd residual = diagnosis::residual_of(next, run, free);
       if (!free.finite) continue;
+      leave_out_starts(run, taps_.size(), residual);
       const double cost = residual.squaredNorm() / variance_ + known(next);
       better = cost < best.cost;
       if (better) {
@@ -254,7 +275,7 @@ Contest::Refit Contest::refitted(std::size_t j, const Signals& run, int steps) c
       }
     }
     if (!better || step + 1 == steps) return best;
-    line = diagnosis::linearised(model, run);
+    line = judged_line(model, run, taps_.size());
   }
 }
 

@@ -76,6 +76,25 @@ TEST(ContestTest, ARepetitionLeavesBoth) {
   EXPECT_THAT(sut.with(made::measured(2100, 4, 2)).left(), ElementsAre(0, 1));
 }
 
+// Eq. NR-2: of noise that is predictable from its past, errors without that past are not judged.
+TEST(ContestTest, WhereTheNoiseModelBeginsNothingIsJudged) {
+  diagnosis::Measurement recording = made::measured(3300, 4, 1);
+  const std::vector<double> white = diagnosis::made::white(3300, 2);
+  double slow = 0.0;
+  for (std::size_t n = 0; n < white.size(); ++n) {
+    recording.channels.back().values[n] += slow = 0.95 * slow + white[n];
+  }
+  const Contest sut({made::candidate("x"), made::candidate("z")},
+                    diagnosis::Signals(recording, {"u"}, "y"));
+  const Eigen::VectorXd left = sut.unmatched(0, 1, made::measured(2100, 8, 2), 0);
+  // The first second is not judged either, 100 samples.
+  EXPECT_EQ(left.head(101).norm(), 0.0);
+  // x and z have steps of one size: so does what is left of them.
+  EXPECT_GT(left.norm(), 0.0);
+  EXPECT_LT(left.segment(101, 40).lpNorm<Eigen::Infinity>(),
+            1.5 * left.tail(1000).lpNorm<Eigen::Infinity>());
+}
+
 // Eq. NR-2: a number that another one of the same model does already costs nothing, one of its own
 // ln(1 + N).
 TEST(ContestTest, ANumberThatTheRecordingDoesNotDetermineCostsNothing) {
