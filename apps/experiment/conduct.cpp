@@ -44,6 +44,12 @@ void set_session(const Folder& folder, std::size_t index, std::int64_t session,
   lab.experiment = {participant_code(index), folder.digest(), fmt::format("{:02}", session)};
 }
 
+void check_gamepad(const Design& design, const lab::LabOptions& lab) {
+  if ((design.who == "gamepad") != lab.gamepad.empty()) return;
+  throw ConfigError("--gamepad", lab.gamepad.empty() ? "nothing" : lab.gamepad.string(),
+                    "a device where experiment.yaml has operator: gamepad, and none elsewhere");
+}
+
 // A participant who can't go on is refused before anything is written.
 void refuse_if_over(const Progress& progress, std::size_t index) {
   const std::string code = participant_code(index);
@@ -71,10 +77,7 @@ std::optional<std::size_t> next_participant(const Folder& folder) {
 }
 
 int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtime::Stop& stop) {
-  if ((folder.design().who == "gamepad") == lab.gamepad.empty()) {
-    throw ConfigError("--gamepad", lab.gamepad.empty() ? "nothing" : lab.gamepad.string(),
-                      "a device where experiment.yaml has operator: gamepad, and none elsewhere");
-  }
+  check_gamepad(folder.design(), lab);
   folder.open_participant(index);
   Journal journal(folder.journal(index));
   const Plan plan = folder.plan(index);
@@ -113,6 +116,26 @@ int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtim
   if (complete) return 0;
   runtime::remark(why + "; run it again to go on");
   return 1;
+}
+
+int conduct_planned(const Folder& folder, std::size_t index, const std::filesystem::path& plan,
+                    lab::LabOptions lab, runtime::Stop& stop) {
+  check_gamepad(folder.design(), lab);
+  static_cast<void>(folder.with_session(participant_code(index)));
+  Journal journal(folder.journal(index));
+  const Progress progress =
+      progress_of(folder, folder.plan(index), journal.entries(), folder.journal(index).string());
+  if (!progress.excluded().empty()) refuse_if_over(progress, index);
+  // The person and the seed are those of the last session.
+  set_session(folder, index, progress.sessions(), lab);
+  lab::take_plan(plan, lab);
+  lab.out = folder.next_planned(index);
+  const std::string name = "planned " + lab.out.filename().string();
+  lab.experiment.session = name;
+  journal.append({.kind = EntryKind::kNote,
+                  .session = progress.sessions(),
+                  .text = fmt::format("{} begins: {}", name, plan.string())});
+  return lab::run_lab(lab, stop);
 }
 
 }  // namespace stillhand::experiment

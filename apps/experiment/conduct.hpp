@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -21,5 +22,14 @@ std::optional<std::size_t> next_participant(const Folder& folder);
 /// @return exit status: 0 when the protocol is complete, 1 when something ended the session before
 /// @throws ConfigError for what can be mended before a session
 int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtime::Stop& stop);
+
+/// Conducts a run of `stillhand plan-run` with a participant, next to the protocol: nothing of it
+/// counts as a step.  Its recording and results are Folder::next_planned(), its line in the journal
+/// is a note.
+/// @param plan  plan.json
+/// @return exit status as of `stillhand lab`
+/// @throws ConfigError for what can be mended before
+int conduct_planned(const Folder& folder, std::size_t index, const std::filesystem::path& plan,
+                    lab::LabOptions lab, runtime::Stop& stop);
 
 }  // namespace stillhand::experiment

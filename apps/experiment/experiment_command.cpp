@@ -36,6 +36,7 @@ struct Typed {
   std::string conditions = "A,B,C";
   std::string order = "williams";
   std::filesystem::path control_model;  // of condition C+, copied into the folder
+  std::filesystem::path plan;           // of plan-run
   std::optional<std::uint64_t> seed;
   Design design;
   lab::LabOptions lab;
@@ -103,6 +104,7 @@ int run(Typed typed) {
     return 0;
   }
   runtime::Stop stop;
+  if (!typed.plan.empty()) return conduct_planned(folder, *index, typed.plan, typed.lab, stop);
   const int status = conduct(folder, *index, typed.lab, stop);
   report::say_next("stillhand experiment status " + typed.folder.string());
   return status;
@@ -168,6 +170,12 @@ void add_run(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
   lab::set_places(lab);
   sub->add_option("--participant", typed->participant,
                   "code such as P07 [the first participant who is not complete]");
+  sub->add_option(
+         "--plan", typed->plan,
+         "conduct the run of this plan.json of `stillhand plan-run` with --participant, in "
+         "place of the protocol: it is no step of it")
+      ->needs("--participant")
+      ->check(CLI::ExistingFile);
   sub->add_option("--domain", lab.domain, "DDS domain, 0 to 232")->capture_default_str();
   sub->add_option("--config", lab.config, "folder with the settings of each service")
       ->capture_default_str();

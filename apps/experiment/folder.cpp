@@ -148,6 +148,13 @@ std::filesystem::path Folder::session(std::size_t index, std::int64_t number) co
   return participant(index) / "sessions" / fmt::format("{:02}", number);
 }
 
+std::filesystem::path Folder::next_planned(std::size_t index) const {
+  for (int number = 1;; ++number) {
+    auto path = participant(index) / "planned" / fmt::format("{:02}", number);
+    if (!std::filesystem::exists(path)) return path;
+  }
+}
+
 Plan Folder::plan(std::size_t index) const { return plan_of(design_, assignment_, index); }
 
 std::size_t Folder::with_session(const std::string& code) const {

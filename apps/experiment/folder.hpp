@@ -14,7 +14,8 @@ namespace stillhand::experiment {
 /// The folder of an experiment:
 ///
 ///   experiment.yaml, experiment.sha256, assignment.sealed, journal.jsonl,
-///   participants/P07/journal.jsonl, participants/P07/sessions/01/session.mcap
+///   participants/P07/journal.jsonl, participants/P07/sessions/01/session.mcap,
+///   participants/P07/planned/01/session.mcap
 ///
 /// The constructor reads and checks the first three; nothing is changed by reading.
 class Folder {
@@ -37,6 +38,8 @@ class Folder {
   [[nodiscard]] std::filesystem::path journal(std::size_t index) const;
   /// "sessions/02" of a participant.
   [[nodiscard]] std::filesystem::path session(std::size_t index, std::int64_t number) const;
+  /// "planned/01" of a participant: the next one that is not there yet.
+  [[nodiscard]] std::filesystem::path next_planned(std::size_t index) const;
   [[nodiscard]] Plan plan(std::size_t index) const;
   /// Index of the participant of a code.  @throws ConfigError for one who has no session
   [[nodiscard]] std::size_t with_session(const std::string& code) const;

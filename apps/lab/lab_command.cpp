@@ -18,7 +18,6 @@
 #include "apps/lab/arms_file.hpp"
 #include "apps/lab/lab.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/files/next_run/plan_file.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/repeatable.hpp"
 
@@ -239,15 +238,6 @@ void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments
   lab.add_flag("--trace-switches", options.traces_switches,
                "keep the kernel's trace of which program each processor runs, so that `stillhand "
                "misses --why` names it; needs the right to write tracefs, as root has it");
-}
-
-// The pegged trial alone, in the motion of the plan.
-void take_plan(const std::filesystem::path& path, LabOptions& options) {
-  const next_run::PlanFile plan = next_run::read_plan(path);
-  options.protocol.planned = true;
-  options.protocol.conditions.clear();
-  options.protocol.identify_s = plan.seconds;
-  options.ride = plan.ride;
 }
 
 void take_arguments(const LabArguments& arguments, LabOptions& options) {

@@ -3,6 +3,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/rig/rig.hpp"
+#include "services/files/next_run/plan_file.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/system/process/remark.hpp"
 #include "services/system/process/shipped.hpp"
@@ -13,6 +14,14 @@ void set_places(LabOptions& options) {
   options.programs = runtime::prefix() / "bin";
   options.profiles = runtime::shipped("qos/profiles.xml");
   options.config = runtime::shipped("deploy/config");
+}
+
+void take_plan(const std::filesystem::path& path, LabOptions& options) {
+  const next_run::PlanFile plan = next_run::read_plan(path);
+  options.protocol.planned = true;
+  options.protocol.conditions.clear();
+  options.protocol.identify_s = plan.seconds;
+  options.ride = plan.ride;
 }
 
 cancellation::Config canceller_config(const LabOptions& options) {

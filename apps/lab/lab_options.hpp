@@ -57,6 +57,10 @@ struct LabOptions {
 /// Sets programs, profiles and config: those of the build tree or of an installed prefix.
 void set_places(LabOptions& options);
 
+/// The pegged trial alone, in the motion of a plan of `stillhand plan-run`.
+/// @throws ConfigError for a file that is none
+void take_plan(const std::filesystem::path& plan, LabOptions& options);
+
 /// Settings of the process of cancellation in this session.
 /// @throws ConfigError when their file is wrong.
 cancellation::Config canceller_config(const LabOptions& options);
