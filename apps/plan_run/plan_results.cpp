@@ -29,6 +29,28 @@ double chance_between(const next_run::Plan& plan, std::size_t i, std::size_t j) 
   return std::min(plan.chance(row, column), plan.chance(column, row));
 }
 
+// Places of the pairs that no motion settles.
+std::vector<std::pair<std::size_t, std::size_t>> out_of_reach(const Planned& planned) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < count_of(planned); ++i) {
+    for (std::size_t j = i + 1; j < count_of(planned); ++j) {
+      if (planned.plan.out_of_reach(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))) {
+        pairs.emplace_back(i, j);
+      }
+    }
+  }
+  return pairs;
+}
+
+ordered_json longer_json(const Planned& planned) {
+  ordered_json longer = ordered_json::array();
+  for (const next_run::Lasting& each : planned.longer) {
+    longer.push_back(
+        {{"seconds", each.seconds}, {"probability_settled", each.probability_settled}});
+  }
+  return longer;
+}
+
 ordered_json pairs_json(const Planned& planned) {
   const next_run::Expected& expected = planned.plan.expected;
   ordered_json pairs = ordered_json::array();
@@ -42,7 +64,8 @@ ordered_json pairs_json(const Planned& planned) {
                        {"evidence_now", planned.contest.before().twice_log_ratio(row, column)},
                        {"evidence_expected", expected.separation(row, column) +
                                                  expected.price[column] - expected.price[row]},
-                       {"probability_settled", planned.plan.chance(row, column)}});
+                       {"probability_settled", planned.plan.chance(row, column)},
+                       {"out_of_reach", planned.plan.out_of_reach(row, column)}});
     }
   }
   return pairs;
@@ -107,6 +130,7 @@ std::string plan_json(const Planned& planned) {
                     {"seconds", planned.seconds},
                     {"probability_settled", planned.plan.probability_settled},
                     {"probability_repeated", planned.plan.probability_repeated},
+                    {"longer", longer_json(planned)},
                     {"ride", next_run::kRideName},
                     {"motion", motion_json(planned)},
                     {"limits", limits_json(planned)},
@@ -136,6 +160,15 @@ std::string plan_table(const Planned& planned) {
       report.rms_m_s2, report.peak_m_s2, report.peak_position_m, planned.seconds);
   text += fmt::format("settles {:.0f} % (at least; the recorded motion for as long: {:.0f} %)\n",
                       100.0 * plan.probability_settled, 100.0 * plan.probability_repeated);
+  for (const next_run::Lasting& each : planned.longer) {
+    text +=
+        fmt::format("        {:.0f} % in {:g} s\n", 100.0 * each.probability_settled, each.seconds);
+  }
+  for (const auto& [i, j] : out_of_reach(planned)) {
+    text +=
+        fmt::format("no motion of this platform tells {} from {} in {:g} s ({} designs tried)\n",
+                    name_at(planned, i), name_at(planned, j), planned.seconds, plan.tried);
+  }
   for (const std::string& line : planned.advice) text += fmt::format("note: {}\n", line);
   return text;
 }

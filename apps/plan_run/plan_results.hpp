@@ -16,7 +16,8 @@ struct Planned {
   const next_run::Plan& plan;
   const next_run::Bounds& bounds;
   double seconds;
-  std::vector<std::string> advice;  ///< what else separates the candidates
+  std::vector<std::string> advice;        ///< what else separates the candidates
+  std::vector<next_run::Lasting> longer;  ///< runs
 };
 
 /// What each pair needs besides the motion: of those that the run settles in less than every second

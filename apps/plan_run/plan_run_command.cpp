@@ -33,6 +33,8 @@
 namespace stillhand::plan_run {
 namespace {
 
+constexpr double kLongest_s = 600.0;
+
 struct Arguments {
   std::vector<std::string> recordings;
   measurement::ReadOptions read;
@@ -50,6 +52,15 @@ next_run::Bounds bounds_of(const Arguments& arguments) {
   const auto platform =
       settings::load<motion::MotionGenerator::Config>(arguments.config / "motion.yaml", "motion");
   return {session::motion_profile(session::identification_trial(protocol)), platform.limits};
+}
+
+// [s] Other lengths that are judged.
+std::vector<double> longer_s(const Arguments& arguments) {
+  std::vector<double> seconds;
+  for (const double times : {2.0, 4.0}) {
+    if (times * arguments.seconds <= kLongest_s) seconds.push_back(times * arguments.seconds);
+  }
+  return seconds;
 }
 
 // The platform moves one input, as an acceleration.
@@ -115,8 +126,12 @@ int run(const Arguments& arguments) {
   progress.show("designing", done);
   const next_run::Plan plan = next_run::best_plan(contest, working, bounds, runtime::on_all_cores);
   progress.finish();
-  const Planned planned{contest, plan, bounds, arguments.seconds,
-                        advice_for(contest, plan, signals)};
+  const Planned planned{contest,
+                        plan,
+                        bounds,
+                        arguments.seconds,
+                        advice_for(contest, plan, signals),
+                        next_run::longer(plan, longer_s(arguments), contest, working, bounds)};
   write_all(arguments, planned, folder);
   std::fputs(plan_table(planned).c_str(), stdout);
   report::say_next(
@@ -141,7 +156,7 @@ void add_plan_run_command(CLI::App& cli, int& status) {
       "stillhand plan-run run1/session.mcap --seconds 30 --out next");
   diagnose::add_recordings(*verb, arguments->recordings, arguments->read, arguments->options);
   verb->add_option("--seconds", arguments->seconds, "length of the run [s]")
-      ->check(CLI::Range(5.0, 600.0))
+      ->check(CLI::Range(5.0, kLongest_s))
       ->capture_default_str();
   verb->add_option("--out", arguments->out, "folder for ride.csv, plan.json and plan.svg")
       ->required()

@@ -59,10 +59,20 @@ std::string instruction(const diagnosis::Signal& signal) {
   if (signal.quantity == diagnosis::Quantity::kAcceleration) {
     return fmt::format("move {} too, unlike the platform's motion: a second axis", signal.source);
   }
-  return fmt::format(
-      "move {} on its own: with the stick free, once with the motor and once "
-      "without it",
-      signal.source);
+  if (signal.source == "roll") return "tilt the platform (roll) in the run, unlike its motion";
+  if (signal.source == "theta" || signal.source == "omega") {
+    return fmt::format(
+        "move {} on its own: with the stick free, once with the motor and once without it",
+        signal.source);
+  }
+  return fmt::format("move {} on its own", signal.source);
+}
+
+// Before the body or after it: there without a person, too.
+bool of_the_chain(const Effect& effect) {
+  const diagnosis::Stage stage = diagnosis::effect_kind(effect.kind).stage(effect);
+  return stage == diagnosis::Stage::kInputTime || stage == diagnosis::Stage::kInputValue ||
+         stage == diagnosis::Stage::kOutputValue;
 }
 
 void add_way(const Candidate& one, const Candidate& other, const diagnosis::Signals& signals,
@@ -77,6 +87,12 @@ void add_way(const Candidate& one, const Candidate& other, const diagnosis::Sign
       continue;
     }
     ways.push_back(instruction(signal));
+  }
+  if (of_the_chain(effect) && !of_the_chain(other.cause())) {
+    ways.push_back(fmt::format(
+        "fasten a mass to the stick in place of the hand, and repeat the run: {} of the measuring "
+        "chain stays, {} of the body goes",
+        effect.kind, other.cause().kind));
   }
   if (diagnosis::effect_kind(effect.kind).time_only(effect)) {
     ways.push_back(fmt::format(

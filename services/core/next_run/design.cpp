@@ -255,7 +255,6 @@ std::vector<Tried> tried(const std::vector<Design>& designs, const Contest& cont
 // The least over the pairs that any motion of the grid can tell apart; where there is none, over
 // all.
 double least(const MatrixXd& margin, const MatrixXd& most) {
-  constexpr double kHopeless = -2.0;  // 2 % of the runs
   double least = HUGE_VAL;
   for (Index i = 0; i < margin.rows(); ++i) {
     for (Index j = 0; j < margin.cols(); ++j) {
@@ -363,6 +362,7 @@ Plan best_plan(const Contest& contest, const Measurement& recorded, const Bounds
   Plan plan;
   plan.design = best_of()->design;
   plan.tried = all.size();
+  plan.best_margin = greatest(all);
   plan.ride = ride_of(plan.design, bounds);
   plan.run = run_of(plan.ride.motion, recorded, model.inputs.front(), model.output);
   plan.expected = contest.expected(plan.run, kSteps);
@@ -371,6 +371,21 @@ Plan best_plan(const Contest& contest, const Measurement& recorded, const Bounds
   plan.probability_repeated = contest.probability_settled(
       contest.expected(repeated(plan.run, recorded, model.inputs.front()), kSteps));
   return plan;
+}
+
+std::vector<Lasting> longer(const Plan& plan, const std::vector<double>& seconds,
+                            const Contest& contest, const Measurement& recorded,
+                            const Bounds& bounds) {
+  const diagnosis::Model& model = contest.candidates().front().model;
+  std::vector<Lasting> all;
+  for (const double each : seconds) {
+    Bounds longer = bounds;
+    longer.ride.duration_ticks = ticks_in(each);
+    const Ride ride = ride_of(plan.design, longer);
+    const Measurement run = run_of(ride.motion, recorded, model.inputs.front(), model.output);
+    all.push_back({each, contest.probability_settled(contest.expected(run, 0))});
+  }
+  return all;
 }
 
 }  // namespace stillhand::next_run

@@ -51,6 +51,9 @@ diagnosis::Measurement run_of(const motion::MotionTrajectory& motion,
                               const diagnosis::Measurement& recorded, const std::string& input,
                               const std::string& output);
 
+/// [deviations] Least margin of a pair that a motion can settle: in 2 % of the runs, Eq. NR-10.
+inline constexpr double kHopeless = -2.0;
+
 /// The best of the designs, and what it can tell apart.
 struct Plan {
   Design design;
@@ -60,7 +63,19 @@ struct Plan {
   Eigen::MatrixXd chance;           ///< Eq. NR-6
   double probability_settled = 0;   ///< Eq. NR-7
   double probability_repeated = 0;  ///< the same of the recorded motion, for as long
+  Eigen::MatrixXd best_margin;      ///< of each pair, the largest of all designs, Eq. NR-10
   std::size_t tried = 0;            ///< designs
+
+  /// No design tells the two apart, whichever is true, Eq. NR-12.
+  [[nodiscard]] bool out_of_reach(Eigen::Index i, Eigen::Index j) const {
+    return best_margin(i, j) < kHopeless && best_margin(j, i) < kHopeless;
+  }
+};
+
+/// What a run of another length is expected to do, Eq. NR-12.
+struct Lasting {
+  double seconds = 0.0;
+  double probability_settled = 0.0;
 };
 
 using ForEach = diagnosis::ForEach;
@@ -71,5 +86,11 @@ using ForEach = diagnosis::ForEach;
 /// @throws stillhand::ConfigError where no design keeps the limits
 Plan best_plan(const Contest& contest, const diagnosis::Measurement& recorded, const Bounds& bounds,
                const ForEach& for_each);
+
+/// The plan's design for other lengths, Eq. NR-12.
+/// @param bounds  as of best_plan()
+std::vector<Lasting> longer(const Plan& plan, const std::vector<double>& seconds,
+                            const Contest& contest, const diagnosis::Measurement& recorded,
+                            const Bounds& bounds);
 
 }  // namespace stillhand::next_run

@@ -56,5 +56,22 @@ TEST(CandidatesTest, AChannelThatOneReadsTellsThemApart) {
               ElementsAre(HasSubstr("x")));
 }
 
+TEST(CandidatesTest, AMassInPlaceOfTheHandTellsTheChainFromTheBody) {
+  const diagnosis::Signals signals(made::measured(1000, 8, 1), {"u"}, "y");
+  Candidate late = made::candidate("u");
+  late.model.effects[0] = {"delay", "fixed", {}, {}, {}};
+  EXPECT_THAT(other_ways(made::candidate("u"), late, signals), ElementsAre(HasSubstr("a mass")));
+  EXPECT_THAT(other_ways(late, late, signals), IsEmpty());
+}
+
+TEST(CandidatesTest, ARollIsTiltedAndAStickMoved) {
+  auto recording = made::measured(1000, 8, 1);
+  recording.channels[1].name = "roll";
+  recording.channels[2].name = "theta";
+  const diagnosis::Signals signals(recording, {"u"}, "y");
+  EXPECT_THAT(other_ways(made::candidate("roll"), made::candidate("theta"), signals),
+              ElementsAre(HasSubstr("tilt the platform"), HasSubstr("with the stick free")));
+}
+
 }  // namespace
 }  // namespace stillhand::next_run

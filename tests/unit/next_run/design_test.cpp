@@ -85,5 +85,28 @@ TEST(DesignTest, ARunHasTheMotionAndTheChannelsOfTheRecording) {
   EXPECT_EQ(sut.find("z")->values[1600], recorded.find("z")->values[100]);
 }
 
+// x and z are one in the recording, and the platform moves neither.
+TEST(DesignTest, ATieThatNoMotionSettlesIsOutOfReach) {
+  const auto recorded = made::measured(3300, 4, 1);
+  const Contest contest = made::tied();
+  const Plan sut = best_plan(contest, recorded, bounds(), [](std::size_t count, const auto& each) {
+    for (std::size_t i = 0; i < count; ++i) each(i);
+  });
+  EXPECT_TRUE(sut.out_of_reach(0, 1));
+  EXPECT_LT(sut.probability_settled, 0.02);
+  const auto twice = longer(sut, {40.0}, contest, recorded, bounds());
+  ASSERT_EQ(twice.size(), 1U);
+  EXPECT_EQ(twice[0].seconds, 40.0);
+  EXPECT_LT(twice[0].probability_settled, 0.02);
+}
+
+TEST(DesignTest, APairIsOutOfReachIfNeitherIsToldFromTheOther) {
+  Plan sut;
+  sut.best_margin = Eigen::MatrixXd{{0.0, -3.0}, {-2.5, 0.0}};
+  EXPECT_TRUE(sut.out_of_reach(0, 1));
+  sut.best_margin(1, 0) = -1.0;
+  EXPECT_FALSE(sut.out_of_reach(0, 1));
+}
+
 }  // namespace
 }  // namespace stillhand::next_run
