@@ -47,6 +47,21 @@ void check_same_rig(const Measurement& one, const Measurement& other) {
   }
 }
 
+// A channel that the screening of one recording leaves out (an encoder that stands in a short run)
+// is left out of all.
+void leave_out_what_one_lacks(std::vector<Measurement>& parts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (const diagnosis::SampleFault& fault : parts[i].screening) {
+      if (parts[i].find(fault.channel) != nullptr) continue;
+      for (Measurement& other : parts) {
+        const auto is_it = [&](const Channel& each) { return each.name == fault.channel; };
+        if (std::erase_if(other.channels, is_it) == 0) continue;
+        other.notes.push_back(fault.channel + " left out, as in " + parts[i].source + ".");
+      }
+    }
+  }
+}
+
 double end_s(const Measurement& measurement) {
   const Stretch& last = measurement.stretches.back();
   return last.start_s + static_cast<double>(last.end - last.first) / measurement.rate_hz;
@@ -78,6 +93,7 @@ void append(Measurement& whole, Measurement&& part) {
 Measurement join(std::vector<Measurement> parts) {
   if (parts.empty()) throw ConfigError("recordings", "none", "at least one");
   for (const Measurement& part : parts) check(part);
+  leave_out_what_one_lacks(parts);
   for (const Measurement& part : parts) check_same_rig(parts.front(), part);
   Measurement whole = std::move(parts.front());
   if (parts.size() == 1) return whole;

@@ -86,6 +86,17 @@ TEST(JoinTest, ChannelsThatDifferAreNamed) {
   EXPECT_THAT(error_of(part("a.csv", 0.0, 1.0), more), HasSubstr("roll [rad] in addition"));
 }
 
+TEST(JoinTest, WhatTheScreeningOfOneLeftOutIsLeftOutOfAll) {
+  Measurement screened = part("b.csv", 5.0, 2.0);
+  const std::string lacking = screened.channels.back().name;
+  screened.channels.pop_back();
+  EXPECT_THAT(error_of(part("a.csv", 5.0, 1.0), screened), testing::HasSubstr(lacking));
+  screened.screening.push_back({lacking, "stuck", {}, 1.0, "", false});
+  const Measurement sut = join({part("a.csv", 5.0, 1.0), screened});
+  EXPECT_EQ(sut.find(lacking), nullptr);
+  EXPECT_THAT(sut.notes, testing::Contains(testing::HasSubstr(lacking + " left out, as in b.csv")));
+}
+
 TEST(JoinTest, NothingIsRefused) { EXPECT_THROW((void)join({}), ConfigError); }
 
 }  // namespace
