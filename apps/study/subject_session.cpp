@@ -29,7 +29,12 @@ std::uint64_t subject_seed(std::uint64_t seed, std::int64_t index) {
 std::vector<PlannedTrial> plan_of(const StudyOptions& options, std::int64_t index) {
   session::ProtocolOptions protocol = options.protocol;
   protocol.seed = subject_seed(options.seed, index);
-  return session::plan(protocol);
+  std::vector<PlannedTrial> trials = session::plan(protocol);
+  if (!options.personal || options.personal->visit == 0) return trials;
+  protocol.seed = session::repeat_seed(protocol.seed, options.personal->visit);
+  std::vector<PlannedTrial> again = session::plan(protocol);
+  std::ranges::copy(again.begin() + 1, again.end(), trials.begin() + 1);
+  return trials;
 }
 
 // Settings of every core for this subject under a condition.
@@ -107,22 +112,29 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
   result.subject = population::draw_subject(options.population, options.seed, index);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const std::uint64_t seed = subject_seed(options.seed, index);
-  session::InProcessLoop loop(configs_of(options, result.subject, kA), seed, kKeepEvery,
-                              sealed_effect(options));
+  session::InProcessLoop shared(configs_of(options, result.subject, kA), seed, kKeepEvery,
+                                sealed_effect(options));
+  std::optional<PersonalTrials> personal;
+  if (options.personal) personal.emplace(*options.personal, options.seed, index);
   for (const PlannedTrial& planned : trials) {
-    if (planned.trial.phase == TrialPhase::kPegged) {
-      result.identification = identified(loop.run(planned).pegged);
-      use(loop, used_model(result.identification));
+    const bool pegged = planned.trial.phase == TrialPhase::kPegged;
+    const Condition condition = pegged ? kA : planned.label;
+    std::optional<session::InProcessLoop> own;
+    if (personal || own_rig(condition)) {
+      session::CoreConfigs configs = configs_of(options, result.subject, condition);
+      if (personal) personal->change(planned, configs);
+      own.emplace(configs, personal ? personal->loop_seed(planned, seed) : seed, kKeepEvery,
+                  sealed_effect(options));
+      if (planned.cancellation) use(*own, used_model(result.identification));
+    }
+    const session::TrialSignals signals = (own ? *own : shared).run(planned);
+    if (pegged) {
+      result.identification = identified(signals.pegged);
+      use(shared, used_model(result.identification));
       continue;
     }
-    result.order.push_back(planned.label);
-    if (own_rig(planned.label)) {
-      session::InProcessLoop other(configs_of(options, result.subject, planned.label), seed,
-                                   kKeepEvery, sealed_effect(options));
-      result.trials[planned.label] = evaluated(other.run(planned), planned);
-    } else {
-      result.trials[planned.label] = evaluated(loop.run(planned), planned);
-    }
+    result.order.push_back(condition);
+    result.trials[condition] = evaluated(signals, planned);
   }
   return result;
 }

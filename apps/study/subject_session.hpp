@@ -4,12 +4,14 @@
 #include <complex>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/libraries/session/in_process.hpp"
 #include "apps/study/conditions.hpp"
+#include "apps/study/personal_spread.hpp"
 #include "services/core/identification/arx.hpp"
 #include "services/core/identification/identifier.hpp"
 #include "services/core/identification/output_error.hpp"
@@ -32,7 +34,9 @@ struct StudyOptions {
   std::uint64_t undeclared_effect = 0;    ///< seed of an effect that only the rigs hold; 0: none
   rig::MotorConfig motor;                 ///< of every rig: its delay and gain
   std::string canceller = "now";          ///< cancellation::sampling_named()
-  unsigned threads = 0;                   ///< 0: one per core
+  /// What else differs within and between people.  With it every trial has a rig of its own.
+  std::optional<PersonalSpread> personal;
+  unsigned threads = 0;  ///< 0: one per core
 };
 
 /// True for the population and the lengths of trials with which conditions A and B were calibrated.
@@ -53,6 +57,7 @@ struct Identification {
 /// delay are 0 without a motor.
 struct TrackedTrial : session::TrialNumbers {
   double feedthrough_rms_n = 0.0;
+  double motor_rms_n = 0.0;
   std::vector<double> target_m;  ///< 20 s from the middle, 20 Hz
   std::vector<double> cursor_m;
   /// X_p/X_r at the lines, of the mean of several trials (Eq. SU-14); empty: that of the gains.

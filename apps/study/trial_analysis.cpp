@@ -61,6 +61,7 @@ TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial&
         session::counterforce_delay_s(signals.feedthrough_n, signals.motor_n, record.rate_hz);
   }
   out.feedthrough_rms_n = session::rms(signals.feedthrough_n);
+  out.motor_rms_n = session::rms(signals.motor_n);
   const std::size_t samples = record.target_m.size();
   const auto excerpt = std::min(samples, static_cast<std::size_t>(kExcerpt_s * record.rate_hz));
   for (std::size_t n = (samples - excerpt) / 2; n < (samples + excerpt) / 2; n += kExcerptStride) {
