@@ -36,13 +36,18 @@ struct Arguments {
   std::filesystem::path population;
   std::filesystem::path out;
   std::vector<std::filesystem::path> sessions;
-  bool explain_paper = false;
+  std::string explain_paper;
   bool calibrate = false;
   CampaignArguments campaign;
 };
 
 // Without --subjects: enough for the spread between subjects.
 constexpr std::int64_t kExplainSubjects = 32;
+
+// Values of --explain-paper.
+constexpr const char* kAll = "all";
+constexpr const char* kMeans = "means";
+constexpr const char* kSpread = "spread";
 
 ExplainOptions explain_options(const StudyRecord& record, bool subjects_given) {
   ExplainOptions options;
@@ -81,8 +86,10 @@ int run_calibration(const StudyRecord& record, const Arguments& arguments, bool 
 int explain(const StudyRecord& record, const Arguments& arguments, bool subjects_given) {
   report::StagedFolder folder(arguments.out);
   report::require_gnuplot();
-  const Explanation explanation =
-      with_progress(explain_paper, explain_options(record, subjects_given));
+  ExplainOptions options = explain_options(record, subjects_given);
+  options.means = arguments.explain_paper != kSpread;
+  options.spread = arguments.explain_paper != kMeans;
+  const Explanation explanation = with_progress(explain_paper, options);
   write_explanation(explanation, record.command_line, folder);
   print_explanation(explanation);
   report::say_report(arguments.out);
@@ -181,8 +188,12 @@ void add_study_command(CLI::App& cli, int& status) {
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   study
-      ->add_flag("--explain-paper", arguments->explain_paper,
-                 "instead of a study: look for causes of the paper's Tables I and II")
+      ->add_option("--explain-paper", arguments->explain_paper,
+                   "instead of a study: look for causes of the paper's means in C (means), of the "
+                   "spread between its people (spread), or of both (all, or nothing)")
+      ->expected(0, 1)
+      ->default_str(kAll)
+      ->check(CLI::IsMember({kAll, kMeans, kSpread}))
       ->excludes("--population")
       ->excludes("--conditions")
       ->excludes("--canceller")
@@ -247,8 +258,8 @@ void add_study_command(CLI::App& cli, int& status) {
     arguments->campaign.trial_given = study->count("--trial-seconds") > 0;
     status = !arguments->campaign.mitigations.empty()
                  ? run_campaign_command(*record, arguments->campaign, arguments->out)
-             : arguments->explain_paper ? explain(*record, *arguments, subjects_given)
-             : arguments->calibrate     ? run_calibration(*record, *arguments, subjects_given)
+             : study->count("--explain-paper") > 0 ? explain(*record, *arguments, subjects_given)
+             : arguments->calibrate ? run_calibration(*record, *arguments, subjects_given)
              : !arguments->sessions.empty()
                  ? run_recorded(*record, arguments->sessions, arguments->out)
                  : run_whole(*record, arguments->out);

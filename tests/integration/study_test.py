@@ -63,10 +63,18 @@ class StudyTest(FolderCase):
                 self.assertLessEqual(low, parameter["median"])
                 self.assertLessEqual(parameter["median"], high)
         self.assertEqual(set(found["paper_chain_z"]), set(found["causes"][0]["z"]))
+        spread = found["spread"]
+        given = [cause["given"] for cause in spread["causes"]]
+        self.assertEqual(given, sorted(given, reverse=True))
+        self.assertTrue(all(cause["means_hold"] for cause in spread["causes"]))
+        self.assertEqual(len(spread["at_the_end"]), len(given))
+        self.assertEqual([judged["name"] for judged in spread["judged"][:2]],
+                         ["paper_chain", spread["combination"]["name"]])
         self.assertEqual({path.name for path in out.iterdir()},
                          {"explanation.json", "report.html", "explain_ranking.svg", "explain_ranking.png",
                           "explain_tables.svg", "explain_tables.png", "explain_ranking.csv",
-                          "explain_tables.csv"})
+                          "explain_tables.csv", "explain_spread.svg", "explain_spread.png",
+                          "explain_spread.csv"})
         self.assert_even_tables(out / "report.html")
 
     def test_calibrate_writes_a_population_that_the_study_takes(self):

@@ -30,6 +30,13 @@ struct Cause {
 /// Every cause; the paper's chain first.
 const std::vector<Cause>& causes();
 
+/// [s] Lateness of the paper's chain, METHOD of cancellation CC-16.
+inline constexpr double kPaperChain_s = 0.0815;
+
+/// What could make people differ in C, with the paper's chain; METHOD Eq. SU-23.  The prior is the
+/// whole grid.
+const std::vector<Cause>& spread_causes();
+
 /// A mean of the population that is calibrated; its logarithm has a normal prior about the
 /// default, METHOD SU-6.
 struct Calibrated {

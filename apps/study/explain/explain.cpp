@@ -32,7 +32,6 @@ class Investigation {
     out_.paper = paper_tables(options_.unit_mm);
     for (const double unit_mm : kOtherUnits_mm) out_.units.push_back(with_unit(unit_mm));
     judge();
-    out_.options = options_;
     return std::move(out_);
   }
 
@@ -194,7 +193,7 @@ class Investigation {
 
   [[nodiscard]] bool accepted(const StudyOptions& options) const {
     try {
-      for (std::size_t i = 0; i < judging_subjects(); ++i) {
+      for (std::size_t i = 0; i < options_.judging_subjects(); ++i) {
         check_subject(options, static_cast<std::int64_t>(i));
       }
       return true;
@@ -202,8 +201,6 @@ class Investigation {
       return false;
     }
   }
-
-  [[nodiscard]] std::size_t judging_subjects() const { return 3 * options_.subjects / 2; }
 
   void judge() {
     const auto ranked = [](const Hypothesis* first, const Hypothesis* end) {
@@ -228,7 +225,7 @@ class Investigation {
     on_time.motor = options_.study.motor;
     const bool compensates = accepted(on_time);
     if (compensates) settings.push_back({"compensated", std::move(on_time)});
-    auto all = simulate("judging with other subjects", settings, judging_subjects());
+    auto all = simulate("judging with other subjects", settings, options_.judging_subjects());
     for (std::size_t i = 0; i < all.size(); ++i) {
       out_.judged.push_back(judged_of(settings[i].label, std::move(all[i])));
     }
@@ -304,7 +301,10 @@ Explanation explain_paper(const ExplainOptions& options, const OnStage& on_stage
   }
   check_base(options);
   const auto start = std::chrono::steady_clock::now();
-  Explanation out = Investigation(options, on_stage).run();
+  Explanation out;
+  if (options.means) out = Investigation(options, on_stage).run();
+  out.options = options;
+  if (options.spread) out.spread = explain_spread(options, on_stage);
   out.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/study/explain/inference.hpp"
+#include "apps/study/explain/spread.hpp"
 
 namespace stillhand::study {
 
@@ -17,6 +18,11 @@ struct ExplainOptions {
   unsigned threads = 0;       ///< 0: one per core
   double unit_mm = 5.5;       ///< of the paper's RMS error
   StudyOptions study;         ///< lengths of the trials
+  bool means = true;          ///< look for causes of the means of C
+  bool spread = true;         ///< look for causes of the spread of B - C
+
+  /// Those who judge, and all of the spread.
+  [[nodiscard]] std::size_t judging_subjects() const { return 3 * subjects / 2; }
 };
 
 /// A hypothesis on subjects that the inference did not see, without any linear step.
@@ -48,13 +54,15 @@ inline constexpr std::size_t kJudgedPairs = 4;
 struct Explanation {
   ExplainOptions options;
   PaperTables paper;
-  std::vector<Hypothesis> single;  ///< no cause first, then in the order of causes()
-  std::vector<Hypothesis> pairs;   ///< best first
+  std::vector<Hypothesis>
+      single;  ///< no cause first, then in the order of causes(); empty: not asked for
+  std::vector<Hypothesis> pairs;  ///< best first
   std::vector<Judged>
       judged;  ///< no cause, the paper's chain, then the best singles, then the best pairs
   std::size_t judged_singles = 0;     ///< number of them before the pairs
   std::optional<Judged> compensated;  ///< the best explanation with today's canceller, on time
   std::vector<UnitSensitivity> units;
+  std::optional<Spread> spread;
   double wall_s = 0.0;
 
   [[nodiscard]] const Hypothesis& find(const std::string& name) const;
@@ -70,6 +78,9 @@ using OnStage = std::function<bool(const std::string& stage, double share)>;
 /// Checks lengths and subjects of the study that both runs begin with.
 /// @throws ConfigError naming what is out of range
 void check_base(const ExplainOptions& options);
+
+/// The spread alone.
+Spread explain_spread(const ExplainOptions& options, const OnStage& on_stage);
 
 /// Looks for causes of the paper's tables; README, "What explains the paper's C".
 /// @throws ConfigError for options out of range; Interrupted

@@ -111,7 +111,10 @@ Figure figure_tables(const Explanation& explanation) {
 }  // namespace
 
 std::vector<Figure> explanation_figures(const Explanation& explanation) {
-  return {figure_ranking(explanation), figure_tables(explanation)};
+  std::vector<Figure> out;
+  if (!explanation.single.empty()) out = {figure_ranking(explanation), figure_tables(explanation)};
+  if (explanation.spread) out.push_back(figure_spread(*explanation.spread));
+  return out;
 }
 
 }  // namespace stillhand::study

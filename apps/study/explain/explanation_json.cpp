@@ -53,14 +53,47 @@ ordered_json judged_json(const Judged& one) {
           {"measurable", measured}};
 }
 
-}  // namespace
+ordered_json spread_fit_json(const SpreadFit& one) {
+  ordered_json causes = ordered_json::object();
+  for (const auto& [c, value] : one.causes) causes[spread_causes()[c].name] = value;
+  return {{"name", one.name},
+          {"causes", causes},
+          {"given", one.given},
+          {"given_ci95", {one.low, one.high}},
+          {"means_hold", one.holds},
+          {"sd_over_paper", one.over_paper},
+          {"z_of_c", one.z_of_c},
+          {"z", z_json(one.z)},
+          {"log_likelihood", one.log_likelihood}};
+}
 
-std::string explanation_json(const Explanation& explanation) {
-  ordered_json out;
-  out["version"] = kVersion;
-  out["seed"] = explanation.options.seed;
-  out["subjects"] = explanation.options.subjects;
-  out["unit_mm"] = explanation.options.unit_mm;
+ordered_json spread_json(const Spread& spread) {
+  const auto all = [](const std::vector<SpreadFit>& fits) {
+    ordered_json out = ordered_json::array();
+    for (const SpreadFit& one : fits) out.push_back(spread_fit_json(one));
+    return out;
+  };
+  ordered_json judged = ordered_json::array();
+  for (const SpreadJudged& one : spread.judged) {
+    ordered_json row = spread_fit_json(one.fit);
+    row["sd_over_paper_ci95"] = one.ratio_ci95;
+    for (std::size_t s = 0; s < kSignatures.size(); ++s) {
+      row["signatures"][kSignatures[s].name] = one.signatures[s];
+    }
+    judged.push_back(std::move(row));
+  }
+  return {{"subjects", spread.subjects},
+          {"seed", spread.seed},
+          {"judged_seed", spread.judged_seed},
+          {"paper_sd", spread.paper},
+          {"chain", spread_fit_json(spread.chain)},
+          {"causes", all(spread.ranked)},
+          {"at_the_end", all(spread.ends)},
+          {"combination", spread_fit_json(spread.combination)},
+          {"judged", judged}};
+}
+
+void add_means(const Explanation& explanation, ordered_json& out) {
   out["causes"] = ordered_json::array();
   out["pairs"] = ordered_json::array();
   for (const Hypothesis& one : explanation.single) out["causes"].push_back(hypothesis_json(one));
@@ -83,6 +116,18 @@ std::string explanation_json(const Explanation& explanation) {
                             {"paper_chain_log_bayes_factor", one.paper_chain},
                             {"best_pair_log_bayes_factor", one.best_pair_gain}});
   }
+}
+
+}  // namespace
+
+std::string explanation_json(const Explanation& explanation) {
+  ordered_json out;
+  out["version"] = kVersion;
+  out["seed"] = explanation.options.seed;
+  out["subjects"] = explanation.options.subjects;
+  out["unit_mm"] = explanation.options.unit_mm;
+  if (!explanation.single.empty()) add_means(explanation, out);
+  if (explanation.spread) out["spread"] = spread_json(*explanation.spread);
   out["wall_s"] = explanation.wall_s;
   return out.dump(2) + "\n";
 }

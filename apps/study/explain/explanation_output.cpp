@@ -19,21 +19,19 @@ void print_hypothesis(const Hypothesis& one, double nothing) {
              one.z[14]);
 }
 
-}  // namespace
-
-void write_explanation(const Explanation& explanation, const std::string& command_line,
-                       report::StagedFolder& folder) {
-  const auto drawings = report::render(explanation_figures(explanation), folder.path());
-  explanation_page(explanation, command_line, drawings).write(folder.path() / "report.html");
-  folder.write("explanation.json", explanation_json(explanation));
-  std::vector<std::string> own{"report.html", "explanation.json"};
-  for (const auto& drawing : drawings) {
-    for (std::string& name : report::figure_files(drawing.name)) own.push_back(std::move(name));
-  }
-  folder.publish(own);
+void print_spread(const Spread& spread) {
+  fmt::print("\nCauses of the spread of B-C, on the paper's chain; SDs over the paper's\n");
+  const auto line = [](const SpreadFit& fit) {
+    fmt::print("{:<56} {:4.0f} %   {:.2f} {:.2f} {:.2f}\n", fit.name, 100.0 * fit.given,
+               fit.over_paper[3], fit.over_paper[4], fit.over_paper[5]);
+  };
+  line(spread.chain);
+  for (const SpreadFit& fit : spread.ranked) line(fit);
+  fmt::print("On other subjects:\n");
+  for (const SpreadJudged& one : spread.judged) line(one.fit);
 }
 
-void print_explanation(const Explanation& explanation) {
+void print_means(const Explanation& explanation) {
   const double nothing = explanation.single.front().log_evidence;
   fmt::print("\n{:<44} {:>8}   {:^17}   {:^17}\n", "", "log", "B-C means", "B-C SDs");
   fmt::print("{:<44} {:>8}   {:>5} {:>5} {:>5}   {:>5} {:>5} {:>5}\n", "cause", "evidence", "RMS",
@@ -54,6 +52,25 @@ void print_explanation(const Explanation& explanation) {
     fmt::print("  {:<44} {:3.0f} {:3.0f} {:3.0f} %\n", one.name, 100.0 * one.restored[0],
                100.0 * one.restored[1], 100.0 * one.restored[2]);
   }
+}
+
+}  // namespace
+
+void write_explanation(const Explanation& explanation, const std::string& command_line,
+                       report::StagedFolder& folder) {
+  const auto drawings = report::render(explanation_figures(explanation), folder.path());
+  explanation_page(explanation, command_line, drawings).write(folder.path() / "report.html");
+  folder.write("explanation.json", explanation_json(explanation));
+  std::vector<std::string> own{"report.html", "explanation.json"};
+  for (const auto& drawing : drawings) {
+    for (std::string& name : report::figure_files(drawing.name)) own.push_back(std::move(name));
+  }
+  folder.publish(own);
+}
+
+void print_explanation(const Explanation& explanation) {
+  if (!explanation.single.empty()) print_means(explanation);
+  if (explanation.spread) print_spread(*explanation.spread);
 }
 
 }  // namespace stillhand::study

@@ -21,6 +21,15 @@ std::vector<report::Figure> explanation_figures(const Explanation& explanation);
 report::Page explanation_page(const Explanation& explanation, const std::string& command_line,
                               const std::vector<report::Drawing>& drawings);
 
+/// The candidates, with the source of each range.
+report::Table causes_table(const std::vector<Cause>& causes);
+
+/// Of the spread: its figure, its sections, and who of the judged causes is least told apart from
+/// one.
+report::Figure figure_spread(const Spread& spread);
+void add_spread(report::Page& page, const Spread& spread, const report::Drawing& drawing);
+std::size_t most_alike(const Spread& spread, std::size_t cause);
+
 /// All files together, or none.
 void write_explanation(const Explanation& explanation, const std::string& command_line,
                        report::StagedFolder& folder);

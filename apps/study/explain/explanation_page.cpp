@@ -102,22 +102,6 @@ report::Table measurable_table(const Explanation& explanation) {
   return table;
 }
 
-report::Table causes_table() {
-  report::Table table;
-  table.caption = "The candidates, with the source of each range.";
-  table.header = {"cause", "what it says", "range of its parameter", "source"};
-  table.align = std::vector(4, report::Align::kLeft);
-  for (const Cause& cause : causes()) {
-    table.rows.push_back({cause.name, cause.what,
-                          cause.grid.empty() ? std::string("none")
-                                             : fmt::format("{} {} to {}", cause.parameter,
-                                                           short_number(cause.grid.front()),
-                                                           short_number(cause.grid.back())),
-                          cause.source});
-  }
-  return table;
-}
-
 void add_verdict(report::Page& page, const Explanation& explanation) {
   const Hypothesis& best = explanation.best();
   page.section("What explains it");
@@ -169,7 +153,52 @@ void add_sensitivity(report::Page& page, const Explanation& explanation) {
       "B - C is the same.");
 }
 
+void add_means(report::Page& page, const Explanation& explanation,
+               const std::vector<report::Drawing>& drawings) {
+  add_verdict(page, explanation);
+  page.section("Before and after");
+  page.figure(drawings[1]);
+  page.table(judged_table(explanation));
+  page.section("Ranking");
+  page.figure(drawings[0]);
+  page.table(ranking_table(explanation, explanation.single, explanation.single.size(),
+                           "One cause. z: distance from the paper in its standard errors, after "
+                           "calibration."));
+  page.table(
+      ranking_table(explanation, explanation.pairs, kPairsListed, "Two causes: the best pairs."));
+  page.section("What would decide");
+  page.table(measurable_table(explanation));
+  add_sensitivity(page, explanation);
+  page.section("The candidates");
+  page.table(causes_table(causes()));
+  page.section("Method");
+  page.paragraph(
+      "Each cause is simulated at several values of its parameter, with the same subjects, motion, "
+      "target and remnant. The likelihood of fifteen figures (the means of A, A-B and B-C, and the "
+      "standard deviations of A-B and B-C between subjects) is normal; its covariance is that of "
+      "twelve such subjects. The means that were calibrated to A and B are calibrated again with "
+      "each cause: they have priors from literature and are integrated out. The evidence "
+      "integrates the cause's parameters over their range, so a parameter that is not needed costs "
+      "evidence. apps/study/METHOD.md has the equations.");
+}
+
 }  // namespace
+
+report::Table causes_table(const std::vector<Cause>& causes) {
+  report::Table table;
+  table.caption = "The candidates, with the source of each range.";
+  table.header = {"cause", "what it says", "range of its parameter", "source"};
+  table.align = std::vector(4, report::Align::kLeft);
+  for (const Cause& cause : causes) {
+    table.rows.push_back({cause.name, cause.what,
+                          cause.grid.empty() ? std::string("none")
+                                             : fmt::format("{} {} to {}", cause.parameter,
+                                                           short_number(cause.grid.front()),
+                                                           short_number(cause.grid.back())),
+                          cause.source});
+  }
+  return table;
+}
 
 const std::vector<Observable>& observables() {
   static const std::vector<Observable> kAll{
@@ -192,31 +221,8 @@ report::Page explanation_page(const Explanation& explanation, const std::string&
               {"computed in", number(explanation.wall_s, 0) + " s"},
               {"made by", report::made_by()},
               {"command line", command_line}});
-  add_verdict(page, explanation);
-  page.section("Before and after");
-  page.figure(drawings[1]);
-  page.table(judged_table(explanation));
-  page.section("Ranking");
-  page.figure(drawings[0]);
-  page.table(ranking_table(explanation, explanation.single, explanation.single.size(),
-                           "One cause. z: distance from the paper in its standard errors, after "
-                           "calibration."));
-  page.table(
-      ranking_table(explanation, explanation.pairs, kPairsListed, "Two causes: the best pairs."));
-  page.section("What would decide");
-  page.table(measurable_table(explanation));
-  add_sensitivity(page, explanation);
-  page.section("The candidates");
-  page.table(causes_table());
-  page.section("Method");
-  page.paragraph(
-      "Each cause is simulated at several values of its parameter, with the same subjects, motion, "
-      "target and remnant. The likelihood of fifteen figures (the means of A, A-B and B-C, and the "
-      "standard deviations of A-B and B-C between subjects) is normal; its covariance is that of "
-      "twelve such subjects. The means that were calibrated to A and B are calibrated again with "
-      "each cause: they have priors from literature and are integrated out. The evidence "
-      "integrates the cause's parameters over their range, so a parameter that is not needed costs "
-      "evidence. apps/study/METHOD.md has the equations.");
+  if (explanation.spread) add_spread(page, *explanation.spread, drawings.back());
+  if (!explanation.single.empty()) add_means(page, explanation, drawings);
   return page;
 }
 

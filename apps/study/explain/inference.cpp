@@ -52,7 +52,7 @@ class Acting {
   }
   /// Change of a subject's metrics, linear between the values of the grid.
   [[nodiscard]] Metrics change(std::size_t subject, double value) const {
-    Metrics out = between(subject, value);
+    Metrics out = metrics_at(cause_, subject, value);
     for (std::size_t k = 0; k < out.size(); ++k) out[k] -= without_[subject].metrics[k];
     return out;
   }
@@ -60,21 +60,6 @@ class Acting {
   [[nodiscard]] const Cause& cause() const { return *cause_.cause; }
 
  private:
-  [[nodiscard]] Metrics between(std::size_t subject, double value) const {
-    if (!has_parameter()) return cause_.at.front()[subject].metrics;
-    const auto& grid = cause_.cause->grid;
-    const auto upper =
-        std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(grid, value) - grid.begin(), 1,
-                                   static_cast<std::ptrdiff_t>(grid.size()) - 1);
-    const auto at = static_cast<std::size_t>(upper);
-    const double share = (value - grid[at - 1]) / (grid[at] - grid[at - 1]);
-    const Metrics& low = cause_.at[at - 1][subject].metrics;
-    const Metrics& high = cause_.at[at][subject].metrics;
-    Metrics out{};
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = low[k] + share * (high[k] - low[k]);
-    return out;
-  }
-
   const CauseResponses& cause_;
   const std::vector<Response>& without_;
   std::vector<double> deviates_;
@@ -268,6 +253,21 @@ class Explaining {
 };
 
 }  // namespace
+
+Metrics metrics_at(const CauseResponses& cause, std::size_t subject, double value) {
+  const auto& grid = cause.cause->grid;
+  if (grid.empty()) return cause.at.front()[subject].metrics;
+  const auto upper =
+      std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(grid, value) - grid.begin(), 1,
+                                 static_cast<std::ptrdiff_t>(grid.size()) - 1);
+  const auto at = static_cast<std::size_t>(upper);
+  const double share = (value - grid[at - 1]) / (grid[at] - grid[at - 1]);
+  const Metrics& low = cause.at[at - 1][subject].metrics;
+  const Metrics& high = cause.at[at][subject].metrics;
+  Metrics out{};
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = low[k] + share * (high[k] - low[k]);
+  return out;
+}
 
 Hypothesis explain_nothing(const Inference& all) {
   return Explaining(all, {}, nullptr, 1, 1).explained({});

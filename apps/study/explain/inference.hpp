@@ -17,6 +17,9 @@ struct CauseResponses {
   std::vector<std::vector<Response>> at;  ///< by value of the grid, then subject; the chain's: one
 };
 
+/// Metrics of a subject with the cause at any value, linear between those of its grid.
+Metrics metrics_at(const CauseResponses& cause, std::size_t subject, double value);
+
 /// Responses that no single cause gives: both causes at one value each.
 struct PairResponses {
   std::array<std::size_t, 2> causes{};  ///< indices of the causes

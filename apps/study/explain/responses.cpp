@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/explain/responses.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "apps/libraries/session/core/trial_numbers.hpp"
@@ -18,9 +19,13 @@ Response response_of(const SubjectResult& result) {
     for (const auto& metric : session::kMetrics) out.metrics[at++] = metric.of(trial);
   }
   const TrackedTrial& cancelled = result.trials.at(kC);
-  out.observed = {cancelled.counterforce_delay_s, cancelled.cancelled_share,
+  out.observed = {cancelled.counterforce_delay_s,
+                  cancelled.cancelled_share,
                   cancelled.feedthrough_rms_n / result.trials.at(kB).feedthrough_rms_n,
-                  result.identification.paper.heldout.free_run_vaf_percent};
+                  result.identification.paper.heldout.free_run_vaf_percent,
+                  cancelled.motor_rms_n / cancelled.feedthrough_rms_n,
+                  static_cast<double>(std::ranges::find(result.order, kC) -
+                                      std::ranges::find(result.order, kB))};
   return out;
 }
 

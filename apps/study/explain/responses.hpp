@@ -16,10 +16,12 @@ using Metrics = std::array<double, 9>;
 
 /// What an experiment could measure besides the tables.
 struct Observed {
-  double counterforce_delay_s = 0.0;  ///< C
-  double cancelled_share = 0.0;       ///< C
-  double feedthrough_ratio = 0.0;     ///< RMS of the feedthrough force, C over B
-  double pegged_vaf_percent = 0.0;    ///< of the model on unseen pegged data
+  double counterforce_delay_s = 0.0;    ///< C
+  double cancelled_share = 0.0;         ///< C
+  double feedthrough_ratio = 0.0;       ///< RMS of the feedthrough force, C over B
+  double pegged_vaf_percent = 0.0;      ///< of the model on unseen pegged data
+  double motor_over_feedthrough = 0.0;  ///< C, RMS of both forces
+  double c_after_b = 0.0;               ///< trials from B to C, negative: before it
 };
 
 /// One subject under one set of options.
