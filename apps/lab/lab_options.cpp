@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/lab_options.hpp"
 
+#include "apps/libraries/session/answer_settings.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/core/rig/rig.hpp"
 #include "services/files/next_run/plan_file.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/system/process/remark.hpp"
@@ -34,10 +34,9 @@ cancellation::Config canceller_config(const LabOptions& options) {
 
 std::optional<session::AnswerConfigs> answers_of(const LabOptions& options) try {
   if (!options.devices.empty()) return std::nullopt;
-  const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");
-  return session::AnswerConfigs{
-      settings::load<sensing::Config>(options.config / "sensing.yaml", "sensing"),
-      canceller_config(options), rig.motor, rig.stick.lever_m};
+  session::AnswerConfigs answers = session::load_answers(options.config);
+  answers.cancellation = canceller_config(options);
+  return answers;
 } catch (const ConfigError& error) {
   runtime::remark(std::string("what C leaves is not split into causes: ") + error.what());
   return std::nullopt;

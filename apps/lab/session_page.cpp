@@ -12,6 +12,7 @@
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "apps/libraries/session/core/trial_numbers.hpp"
+#include "apps/libraries/session/force_budget_table.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -56,21 +57,8 @@ std::vector<report::Cell> paper_row(const session::Paper& paper) {
 void add_budgets(const session::SessionResult& result, report::Page& page) {
   for (const session::TrialResult& trial : result.trials) {
     if (!trial.budget) continue;
-    report::Table table{
-        "What " + std::string(session::name_of(trial.label)) +
-            " leaves of the feedthrough force, split into its causes. They add up to the whole; a "
-            "cause that cancels another one is negative.",
-        {"cause", "[N]", "95 % interval [N]"}};
-    const auto add = [&](const std::string& name, const session::ForceEstimate& each) {
-      table.rows.push_back(
-          {name, number(each.force_n, 2), number(each.low_n, 2) + " to " + number(each.high_n, 2)});
-    };
-    for (const session::ForceCause& cause : session::kForceCauses) {
-      add(fmt::format("{}: {}", cause.key, cause.meaning), (*trial.budget).*cause.of);
-    }
-    add("all: RMS of the body's and the motor's force together", trial.budget->left);
     page.section("What is left");
-    page.table(table);
+    page.table(session::budget_table(std::string(session::name_of(trial.label)), *trial.budget));
   }
 }
 

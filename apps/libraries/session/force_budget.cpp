@@ -21,19 +21,11 @@ constexpr std::size_t kMean_ticks = 10;  // Eq. SN-10 at 100 Hz
 constexpr Eigen::Index kTaps = 100;      // 1 s of motion
 
 /// Sums of a block of the trial.
-struct Sums {
-  double ticks = 0.0, left = 0.0;  // of f' + f_m: its square
-  // Of its products with the part that is late, limited, of the sensor, and with the rest.
-  double lateness = 0.0, limits = 0.0, sensor = 0.0, rest = 0.0;
+struct Sums : ForceSums {
   double unexplained = 0.0;  // square of what no filter of the motion explains of the rest
 
   Sums& operator+=(const Sums& other) {
-    ticks += other.ticks;
-    left += other.left;
-    lateness += other.lateness;
-    limits += other.limits;
-    sensor += other.sensor;
-    rest += other.rest;
+    ForceSums::operator+=(other);
     unexplained += other.unexplained;
     return *this;
   }
@@ -79,23 +71,17 @@ Eigen::VectorXd unexplained(const std::vector<double>& force_n,
   return left * std::sqrt(static_cast<double>(rows) / static_cast<double>(rows - columns));
 }
 
-Blocks sums_of(const BudgetSignals& signals) {
-  const MotorForces& asked = signals.asked;
-  const std::size_t size = signals.feedthrough_n.size();
+Blocks blocks_of(const BudgetSignals& signals) {
+  const std::size_t size = signals.forces.size();
   std::vector<double> rest_n(size);
   Blocks blocks{};
   const auto block_of = [size](std::size_t n) {
     return std::min(n * kJackknifeBlocks / size, kJackknifeBlocks - 1);
   };
   for (std::size_t n = 0; n < size; ++n) {
-    const double left_n = signals.feedthrough_n[n] + signals.motor_n[n];
-    rest_n[n] = signals.feedthrough_n[n] + asked.noiseless_n[n];
-    blocks[block_of(n)] += {.ticks = 1.0,
-                            .left = left_n * left_n,
-                            .lateness = left_n * (signals.motor_n[n] - asked.on_time_n[n]),
-                            .limits = left_n * (asked.on_time_n[n] - asked.unlimited_n[n]),
-                            .sensor = left_n * (asked.unlimited_n[n] - asked.noiseless_n[n]),
-                            .rest = left_n * rest_n[n]};
+    const TickForces& forces = signals.forces[n];
+    rest_n[n] = forces.feedthrough_n + forces.asked.noiseless_n;
+    blocks[block_of(n)].ForceSums::operator+=(sums_of(forces));
   }
   const Eigen::VectorXd noise_n = unexplained(rest_n, signals.motion);
   const double share = static_cast<double>(size) / static_cast<double>(noise_n.size());
@@ -118,31 +104,54 @@ template <typename Of>
 ForceEstimate estimate(const Blocks& blocks, Of of) {
   const auto value = [&](std::size_t left_out) {
     const Sums sums = sum_without(blocks, left_out);
-    return of(sums) / std::sqrt(std::max(sums.left * sums.ticks, 1e-300));
+    return sums.force_n(of(sums));
   };
   const double force_n = value(blocks.size());
   const double reach_n = jackknife_reach(jackknife_variance(value));
   return {force_n, force_n - reach_n, force_n + reach_n};
 }
 
-bool known(const std::vector<double>& values) {
-  return std::ranges::all_of(values, [](double each) { return std::isfinite(each); });
+bool known(const TickForces& forces) {
+  return std::isfinite(forces.feedthrough_n + forces.motor_n + forces.asked.on_time_n +
+                       forces.asked.unlimited_n + forces.asked.noiseless_n);
 }
 
 }  // namespace
 
+ForceSums& ForceSums::operator+=(const ForceSums& other) noexcept {
+  ticks += other.ticks;
+  left += other.left;
+  lateness += other.lateness;
+  limits += other.limits;
+  sensor += other.sensor;
+  rest += other.rest;
+  return *this;
+}
+
+double ForceSums::force_n(double products) const noexcept {
+  return left > 0.0 ? products / std::sqrt(left * ticks) : 0.0;
+}
+
+ForceSums sums_of(const TickForces& forces) noexcept {
+  const AskedForces& asked = forces.asked;
+  const double left_n = forces.feedthrough_n + forces.motor_n;
+  return {.ticks = 1.0,
+          .left = left_n * left_n,
+          .lateness = left_n * (forces.motor_n - asked.on_time_n),
+          .limits = left_n * (asked.on_time_n - asked.unlimited_n),
+          .sensor = left_n * (asked.unlimited_n - asked.noiseless_n),
+          .rest = left_n * (forces.feedthrough_n + asked.noiseless_n)};
+}
+
 std::optional<ForceBudget> force_budget(const BudgetSignals& signals) {
-  const MotorForces& asked = signals.asked;
-  const std::size_t size = signals.feedthrough_n.size();
+  const std::size_t size = signals.forces.size();
   if (static_cast<double>(size) < kLeast_s * kControlRateHz) return std::nullopt;
-  for (const auto* each : {&signals.feedthrough_n, &signals.motor_n, &asked.on_time_n,
-                           &asked.unlimited_n, &asked.noiseless_n}) {
-    if (each->size() != size || !known(*each)) return std::nullopt;
-  }
+  if (!std::ranges::all_of(signals.forces, known)) return std::nullopt;
   for (const std::vector<double>& channel : signals.motion) {
-    if (channel.size() != size || !known(channel)) return std::nullopt;
+    const auto finite = [](double each) { return std::isfinite(each); };
+    if (channel.size() != size || !std::ranges::all_of(channel, finite)) return std::nullopt;
   }
-  const Blocks blocks = sums_of(signals);
+  const Blocks blocks = blocks_of(signals);
   return ForceBudget{
       .left = estimate(blocks, [](const Sums& sums) { return sums.left; }),
       .model = estimate(blocks, [](const Sums& sums) { return sums.rest - sums.unexplained; }),

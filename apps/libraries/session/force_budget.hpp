@@ -40,18 +40,38 @@ inline constexpr std::array<ForceCause, 5> kForceCauses{{
     {"sensor", "noise and steps of the accelerometer", &ForceBudget::sensor},
 }};
 
-/// The motor's force over the measured ticks, as it would have been.
-struct MotorForces {
-  std::vector<double> on_time_n;    ///< had every sample been answered in its tick
-  std::vector<double> unlimited_n;  ///< the same without limits, f_u
-  std::vector<double> noiseless_n;  ///< the same from the true acceleration, f_t
+/// The motor's force in a tick, as it would have been.
+struct AskedForces {
+  double on_time_n = 0.0;    ///< had every sample been answered in its tick, f_o
+  double unlimited_n = 0.0;  ///< the same without limits, f_u
+  double noiseless_n = 0.0;  ///< the same from the true acceleration, f_t
 };
+
+/// Forces of a tick.
+struct TickForces {
+  double feedthrough_n = 0.0;  ///< f'
+  double motor_n = 0.0;        ///< f_m, as applied
+  AskedForces asked;
+};
+
+/// Sums over ticks of a trial.  They may be taken while it runs: the parts so far add up to what is
+/// left so far.
+struct ForceSums {
+  double ticks = 0.0;
+  double left = 0.0;  ///< [N^2] of f' + f_m: its square
+  /// [N^2] of its products with the part that is late, limited, of the sensor, and with the rest
+  double lateness = 0.0, limits = 0.0, sensor = 0.0, rest = 0.0;
+
+  ForceSums& operator+=(const ForceSums& other) noexcept;
+  /// [N] What a sum of products is of RMS(f' + f_m), README Eq. SN-8; 0 of nothing.
+  [[nodiscard]] double force_n(double products) const noexcept;
+};
+/// Of one tick.
+ForceSums sums_of(const TickForces& forces) noexcept;
 
 /// Forces of a trial and the motion behind them, 1 kHz over the measured ticks; equally long.
 struct BudgetSignals {
-  std::vector<double> feedthrough_n;        ///< f'
-  std::vector<double> motor_n;              ///< f_m, as applied
-  MotorForces asked;                        ///< of the same ticks
+  std::vector<TickForces> forces;
   std::vector<std::vector<double>> motion;  ///< channels that f' may follow, any unit
 };
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/libraries/session/on_time.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 #include <utility>
 
 #include "apps/libraries/session/core/trial_forces.hpp"
 #include "apps/libraries/session/loop.hpp"
 #include "apps/libraries/session/measured_ticks.hpp"
-#include "services/core/cancellation/parts/countermeasure.hpp"
 #include "services/core/rig/sensors.hpp"
 #include "services/messages/cancellation/codec.hpp"
 #include "services/messages/sensing/codec.hpp"
@@ -17,12 +18,7 @@
 namespace stillhand::session {
 namespace {
 
-struct Answer {
-  Tick tick_ = 0;
-  double motor_n = 0.0;
-
-  [[nodiscard]] Tick tick() const noexcept { return tick_; }
-};
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 std::optional<cancellation::ControlModel> model_of(const SessionRecording& session,
                                                    std::int32_t number,
@@ -47,56 +43,88 @@ AnswerConfigs without_limits(AnswerConfigs configs) {
   return configs;
 }
 
-/// First tick of what a trial needs: the model settles before it.
-Tick first_tick(const Trial& trial, const cancellation::ControlModel& model,
-                const AnswerConfigs& configs) {
-  cancellation::Countermeasure canceller(configs.cancellation, {.force = true});
-  if (canceller.load_model(model) != cancellation::Refusal::kNone) return trial.start_tick;
-  return trial.start_tick - trial.ramp_ticks - canceller.unsettled_ticks();
+/// The sample with the platform's true acceleration along the rolled axis (RG-23), without noise
+/// and steps of the acquisition.
+sensing::DeviceSample noiseless(sensing::DeviceSample sample, double accel_m_s2,
+                                const sensing::Config& sensing) noexcept {
+  if (std::isnan(accel_m_s2)) return sample;
+  const double along_m_s2 =
+      accel_m_s2 * std::cos(sample.roll_rad) - rig::kGravity_m_s2 * std::sin(sample.roll_rad);
+  sample.accel_y_v = along_m_s2 * sensing.accel_sensitivity_v_m_s2 + sensing.accel_y_offset_v;
+  return sample;
 }
 
-/// The motor's force in every tick of the samples.
-std::vector<Answer> answers_to(const std::vector<sensing::DeviceSample>& samples,
-                               const PlannedTrial& planned, const cancellation::ControlModel& model,
-                               const AnswerConfigs& configs) {
-  const Trial& trial = planned.trial;
-  sensing::Conditioner conditioner(configs.sensing);
-  cancellation::Countermeasure canceller(configs.cancellation, {.force = true});
-  rig::Motor motor(configs.motor, configs.lever_m);
-  if (canceller.load_model(model) != cancellation::Refusal::kNone) return {};
-  std::vector<Answer> answers;
-  double command_n = 0.0;
-  for (const sensing::DeviceSample& sample : samples) {
-    const bool covered = trial.covers(sample.tick);
-    const sensing::Sensed sensed = conditioner.step(sample);
-    const double before_n = std::exchange(
-        command_n, canceller.step(input_of(sample.tick, sensed, covered, covered)).force_n);
-    const double demand_n = configs.motor.answers_in_tick() ? command_n : before_n;
-    answers.push_back({sample.tick, motor.step({true, 0, demand_n, covered}).force_n});
+/// First tick of what a trial needs: the model settles before it.
+Tick first_tick(const Trial& trial, const OnTime& on_time) {
+  return trial.start_tick - trial.ramp_ticks - on_time.unsettled_ticks();
+}
+
+struct Answered {
+  Tick tick_ = 0;
+  OnTime::Answer answer;
+
+  [[nodiscard]] Tick tick() const noexcept { return tick_; }
+};
+
+/// Every raw sample of the trial, and before it, answered in its tick.
+std::vector<Answered> answers_to(const SessionRecording& session, const Trial& trial,
+                                 OnTime on_time) {
+  const Tick first = first_tick(trial, on_time);
+  std::vector<Answered> answers;
+  auto truth = session.rig_truths.begin();
+  for (const auto& raw : session.raw_samples) {
+    if (raw.tick() < first || raw.tick() >= trial.start_tick + trial.duration_ticks) continue;
+    while (truth != session.rig_truths.end() && truth->tick() < raw.tick()) ++truth;
+    const bool known = truth != session.rig_truths.end() && truth->tick() == raw.tick();
+    answers.push_back(
+        {raw.tick(), on_time.step(sensing::from_idl(raw),
+                                  known ? truth->platform_acceleration_m_s2() : kUnknown,
+                                  trial.covers(raw.tick()))});
   }
   return answers;
 }
 
-std::vector<double> over_trial(const std::vector<Answer>& answers, const Trial& trial) {
+std::vector<TickForces> forces_of(const SessionRecording& session, const Trial& trial,
+                                  const std::vector<Answered>& answers) {
   std::int64_t missing = 0;
-  if (answers.empty()) return {};
-  return measured(answers, trial, [](const Answer& each) { return each.motor_n; }, missing);
+  const auto truth = [&](auto value) {
+    return measured(session.rig_truths, trial, value, missing);
+  };
+  const auto asked = [&](double AskedForces::* of) {
+    return measured(
+        answers, trial, [of](const Answered& each) { return each.answer.forces.*of; }, missing);
+  };
+  const auto feedthrough_n = truth([](const auto& t) { return t.feedthrough_force_n(); });
+  const auto motor_n = truth([](const auto& t) { return t.motor_force_n(); });
+  const auto on_time_n = asked(&AskedForces::on_time_n);
+  const auto unlimited_n = asked(&AskedForces::unlimited_n);
+  const auto noiseless_n = asked(&AskedForces::noiseless_n);
+  std::vector<TickForces> forces;
+  for (std::size_t n = 0; n < motor_n.size(); ++n) {
+    forces.push_back(
+        {feedthrough_n[n], motor_n[n], {on_time_n[n], unlimited_n[n], noiseless_n[n]}});
+  }
+  return forces;
 }
 
-/// The samples with the platform's true acceleration along the rolled axis (RG-23), without noise
-/// and steps of the acquisition.
-std::vector<sensing::DeviceSample> noiseless(std::vector<sensing::DeviceSample> samples,
-                                             const SessionRecording& session,
-                                             const sensing::Config& sensing) {
-  auto truth = session.rig_truths.begin();
-  for (sensing::DeviceSample& sample : samples) {
-    while (truth != session.rig_truths.end() && truth->tick() < sample.tick) ++truth;
-    if (truth == session.rig_truths.end() || truth->tick() != sample.tick) continue;
-    const double along_m_s2 = truth->platform_acceleration_m_s2() * std::cos(sample.roll_rad) -
-                              rig::kGravity_m_s2 * std::sin(sample.roll_rad);
-    sample.accel_y_v = along_m_s2 * sensing.accel_sensitivity_v_m_s2 + sensing.accel_y_offset_v;
+/// Median of what the recorded predictions differ by from those of the answers, as a share of their
+/// RMS: 0 where the settings are those of the session; a median, since lost samples change some.
+double apart(const SessionRecording& session, const Trial& trial,
+             const std::vector<Answered>& answers) {
+  std::vector<double> predicted_n, differ_n;
+  auto answer = answers.begin();
+  for (const auto& command : session.motor_commands) {
+    if (!trial.measures(command.tick())) continue;
+    while (answer != answers.end() && answer->tick() < command.tick()) ++answer;
+    if (answer == answers.end() || answer->tick() != command.tick()) continue;
+    predicted_n.push_back(command.predicted_force_n());
+    differ_n.push_back(std::abs(command.predicted_force_n() - answer->answer.predicted_n));
   }
-  return samples;
+  if (differ_n.empty()) return 0.0;
+  const auto middle = differ_n.begin() + static_cast<std::ptrdiff_t>(differ_n.size() / 2);
+  std::ranges::nth_element(differ_n, middle);
+  const double whole_n = rms(predicted_n);
+  return whole_n > 0.0 ? *middle / whole_n : 0.0;
 }
 
 /// Lateral acceleration, and other channels that move by more than a hundredth of it.
@@ -119,33 +147,71 @@ std::vector<std::vector<double>> motion_of(const SessionRecording& session, cons
 
 }  // namespace
 
-BudgetSignals on_time_signals(const SessionRecording& session, const PlannedTrial& planned,
-                              std::int32_t number, const AnswerConfigs& configs) {
-  const Trial& trial = planned.trial;
-  const auto model = model_of(session, number, configs.cancellation.sampling);
-  std::int64_t missing = 0;
-  const auto truth = [&](auto value) {
-    return measured(session.rig_truths, trial, value, missing);
+OnTime::Chain::Chain(const AnswerConfigs& configs, bool answers_in_tick)
+    : conditioner(configs.sensing),
+      canceller(configs.cancellation, {.force = true}),
+      motor(configs.motor, configs.lever_m),
+      in_tick(answers_in_tick) {}
+
+void OnTime::Chain::step(const sensing::DeviceSample& sample, bool cancels) noexcept {
+  const sensing::Sensed sensed = conditioner.step(sample);
+  const auto answer = canceller.step(input_of(sample.tick, sensed, cancels, cancels));
+  const double before_n = std::exchange(command_n, answer.force_n);
+  predicted_n = answer.predicted_force_n;
+  motor_n = motor.step({true, 0, in_tick ? command_n : before_n, cancels}).force_n;
+}
+
+OnTime::OnTime(const AnswerConfigs& configs)
+    : sensing_(configs.sensing),
+      sensed_(configs, configs.motor.answers_in_tick()),
+      unlimited_(without_limits(configs), configs.motor.answers_in_tick()),
+      noiseless_(unlimited_) {}
+
+bool OnTime::load_model(const cancellation::ControlModel& model) {
+  const auto loads = [&](Chain& chain) {
+    return chain.canceller.load_model(model) == cancellation::Refusal::kNone;
   };
-  std::vector<double> feedthrough_n = truth([](const auto& t) { return t.feedthrough_force_n(); });
-  const bool known = std::ranges::all_of(feedthrough_n, [](double n) { return std::isfinite(n); });
-  if (!model || !known) return {};
-  const Tick first = first_tick(trial, *model, configs);
-  std::vector<sensing::DeviceSample> samples;
-  for (const auto& raw : session.raw_samples) {
-    if (raw.tick() >= first && raw.tick() < trial.start_tick + trial.duration_ticks) {
-      samples.push_back(sensing::from_idl(raw));
-    }
+  return loads(sensed_) && loads(unlimited_) && loads(noiseless_);
+}
+
+OnTime::Answer OnTime::step(const sensing::DeviceSample& sample, double accel_m_s2,
+                            bool cancels) noexcept {
+  sensed_.step(sample, cancels);
+  unlimited_.step(sample, cancels);
+  noiseless_.step(noiseless(sample, accel_m_s2, sensing_), cancels);
+  return {{sensed_.motor_n, unlimited_.motor_n, noiseless_.motor_n}, sensed_.predicted_n};
+}
+
+std::optional<std::int32_t> model_in_use(const SessionRecording& session, const Trial& trial) {
+  const auto first = std::ranges::find_if(session.motor_commands, [&](const auto& command) {
+    return trial.measures(command.tick()) && command.model() >= 0;
+  });
+  if (first == session.motor_commands.end()) return std::nullopt;
+  return first->model();
+}
+
+SplitTrial split_trial(const SessionRecording& session, const Trial& trial,
+                       const AnswerConfigs& configs) {
+  constexpr double kMostApart = 0.01;
+  const auto number = model_in_use(session, trial);
+  const auto model =
+      number ? model_of(session, *number, configs.cancellation.sampling) : std::nullopt;
+  OnTime on_time(configs);
+  if (!model || !on_time.load_model(*model)) {
+    return {.why = "the recording lacks the model that the motor followed"};
   }
-  const AnswerConfigs free = without_limits(configs);
-  const auto asked = [&](const std::vector<sensing::DeviceSample>& of, const AnswerConfigs& with) {
-    return over_trial(answers_to(of, planned, *model, with), trial);
-  };
-  return {std::move(feedthrough_n),
-          truth([](const auto& t) { return t.motor_force_n(); }),
-          {asked(samples, configs), asked(samples, free),
-           asked(noiseless(samples, session, configs.sensing), free)},
-          motion_of(session, trial)};
+  const std::vector<Answered> answers = answers_to(session, trial, std::move(on_time));
+  if (const double share = apart(session, trial, answers); share > kMostApart) {
+    return {.why = fmt::format("the settings are not those of the session: half of the canceller's "
+                               "predictions are {:.0f} % or more apart from the recorded ones",
+                               100.0 * share)};
+  }
+  SplitTrial split{force_budget({forces_of(session, trial, answers), motion_of(session, trial)}),
+                   ""};
+  if (!split.budget) {
+    split.why = "it takes 12 s of a simulated rig: the feedthrough of devices is not known";
+  }
+  return split;
 }
 
 }  // namespace stillhand::session

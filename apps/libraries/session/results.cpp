@@ -32,10 +32,7 @@ bool opposes_feedthrough(const PlannedTrial& planned) {
 TrialResult::Models models_of(const SessionRecording& session, const PlannedTrial& planned) {
   TrialResult::Models models;
   if (planned.cancellation || cancellation::needs_force(planned.parts)) {
-    const auto first = std::ranges::find_if(session.motor_commands, [&](const auto& command) {
-      return planned.trial.measures(command.tick()) && command.model() >= 0;
-    });
-    if (first != session.motor_commands.end()) models.force = first->model();
+    models.force = model_in_use(session, planned.trial);
   }
   if (!cancellation::needs_position(planned.parts)) return models;
   for (const stillhand_msgs::FeedthroughModel& model : session.models) {
@@ -292,8 +289,8 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
     if (planned.trial.phase != TrialPhase::kTracking) continue;
     result.trials.push_back(evaluate_trial(session, planned));
     TrialResult& trial = result.trials.back();
-    if (answers && planned.cancellation && planned.parts.empty() && trial.models.force) {
-      trial.budget = force_budget(on_time_signals(session, planned, *trial.models.force, *answers));
+    if (answers && planned.cancellation && planned.parts.empty()) {
+      trial.budget = split_trial(session, planned.trial, *answers).budget;
     }
     if (planned.moving && result.model && result.model->usable() && !result.conversion) {
       const RateConversionCost cost = conversion_cost(session, *result.model, planned.trial);

@@ -31,10 +31,9 @@ Countermeasure::Countermeasure(const Config& config, const Recipe& recipe)
     : config_(checked(config)),
       envelope_(config.limits),
       force_(config),
-      own_(std::make_unique<PartList>(recipe)),
-      parts_(own_.get()),
-      follows_(parts_->follow()) {
-  if (follows_) force_.follow(parts_->follow());
+      own_(recipe),
+      follows_(own_.follow()) {
+  if (follows_) force_.follow(own_.follow());
   if (!recipe.model) return;
   const Refusal refusal = load_model(*recipe.model);
   if (refusal != Refusal::kNone) {
@@ -52,27 +51,28 @@ Refusal Countermeasure::load_model(const ControlModel& model) noexcept {
 void Countermeasure::use(PartList& parts) noexcept {
   if (follows_ || parts.follow()) force_.follow(parts.follow());
   follows_ = parts.follow().has_value();
-  parts_ = &parts;
+  lent_ = &parts;
   off_rad_ = 0.0;
   finite_ = true;
 }
 
 std::int64_t Countermeasure::settle_ticks() const noexcept {
-  return std::max(force_.settle_ticks(), parts_->settle_ticks());
+  return std::max(force_.settle_ticks(), running().settle_ticks());
 }
 
 CountermeasureOutput Countermeasure::step(const CountermeasureInput& input) noexcept {
+  PartList& parts = running();
   const std::int64_t full = config_.fade_ticks;
   // Where the motor does not act against f^, what is left of it says nothing about the model.
-  const bool in_effect = engaged_ == full && parts_->acts_against_force();
+  const bool in_effect = engaged_ == full && parts.acts_against_force();
   const Force::Output force = force_.step(input.tick, input.sensed, input.sensed_flags, in_effect);
   const bool acting = input.enabled && input.permitted && force.sound && finite_ &&
-                      (has_model() || !parts_->needs_force());
+                      (has_model() || !parts.needs_force());
   // Falls as fast as the envelope, so that one bad sample costs no more than one tick of its ramp.
   const std::int64_t fall = full / config_.limits.ramp_ticks + 1;
   engaged_ = acting ? std::min(engaged_ + 1, full) : std::max<std::int64_t>(engaged_ - fall, 0);
   const double share = static_cast<double>(engaged_) / static_cast<double>(full);
-  double wanted_n = parts_->acts_against_force() ? -config_.gain * share * force.against_n : 0.0;
+  double wanted_n = parts.acts_against_force() ? -config_.gain * share * force.against_n : 0.0;
   if (force.sound) {
     const Moment now{of(input.sensed, Channel::kAccelY),
                      within(input.sensed, Channel::kTheta),
@@ -81,14 +81,14 @@ CountermeasureOutput Countermeasure::step(const CountermeasureInput& input) noex
                      force_n_,
                      input.tick,
                      input.trial};
-    const double parts_n = parts_->forces(now);
+    const double parts_n = parts.forces(now);
     wanted_n += share * parts_n;
-    const double off_rad = parts_->off(now);
+    const double off_rad = parts.off(now);
     if (std::isfinite(off_rad)) off_rad_ = off_rad;
     finite_ = std::isfinite(off_rad) && std::isfinite(parts_n);
-    parts_->learn(now.theta_rad, acting && engaged_ == full);
+    parts.learn(now.theta_rad, acting && engaged_ == full);
   } else if (engaged_ == 0) {
-    parts_->restart();
+    parts.restart();
   }
   const double stick_rad = of(input.sensed, Channel::kTheta);
   if (std::isfinite(stick_rad)) theta_rad_ = stick_rad;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "services/core/cancellation/parts/force.hpp"
 #include "services/core/cancellation/parts/part_list.hpp"
@@ -40,8 +39,8 @@ struct CountermeasureOutput {
 /// sample, with a model where a part needs f^, and while what they ask for is finite.  The force is
 /// zero within ramp_ticks otherwise, whatever the parts ask for.  A tick without a sound sample
 /// does not step the parts, while f^ is bridged (CC-2); what they take off the command is held
-/// while e falls, so it is zero within ramp_ticks too. One thread.  step(), take() and use() never
-/// allocate, lock or throw.
+/// while e falls, so it is zero within ramp_ticks too.  One thread; a copy goes on on its own, with
+/// the parts lent to it.  step(), take() and use() never allocate, lock or throw.
 class Countermeasure {
  public:
   /// @param recipe  parts of its own; without any, B
@@ -60,7 +59,7 @@ class Countermeasure {
   /// Other parts from the next step on; only while it does not act.  Those of before may be gone.
   /// @param parts  outlives its use
   void use(PartList& parts) noexcept;
-  [[nodiscard]] bool runs(const PartList& parts) const noexcept { return parts_ == &parts; }
+  [[nodiscard]] bool runs(const PartList& parts) const noexcept { return lent_ == &parts; }
   /// A force or a share of one is left, or something is taken off.
   [[nodiscard]] bool acts() const noexcept { return engaged_ > 0 || force_n_ != 0.0; }
 
@@ -69,16 +68,21 @@ class Countermeasure {
   /// Gain and phase followed, Eq. CC-10; 1 and 0 where nothing follows.
   [[nodiscard]] const AdaptiveGain::Pair& weights() const noexcept { return force_.weights(); }
   /// w of Eq. MI-5; 0 without a schedule.
-  [[nodiscard]] double schedule_weight() const noexcept { return parts_->schedule_weight(); }
+  [[nodiscard]] double schedule_weight() const noexcept { return running().schedule_weight(); }
   /// From the first step until the models of force and position have settled [ticks], CC-4.
   [[nodiscard]] std::int64_t settle_ticks() const noexcept;
 
  private:
+  [[nodiscard]] PartList& running() noexcept { return lent_ != nullptr ? *lent_ : own_; }
+  [[nodiscard]] const PartList& running() const noexcept {
+    return lent_ != nullptr ? *lent_ : own_;
+  }
+
   Config config_;
   signal::ForceEnvelope envelope_;
   Force force_;
-  std::unique_ptr<PartList> own_;
-  PartList* parts_;
+  PartList own_;
+  PartList* lent_ = nullptr;  ///< by use(); else its own run
   bool follows_;              ///< a part says how, not the model
   std::int64_t engaged_ = 0;  ///< ticks that the parts have been acting, up to fade_ticks
   double force_n_ = 0.0;      ///< of the tick before
