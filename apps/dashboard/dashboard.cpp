@@ -13,9 +13,8 @@
 #include "apps/dashboard/remote.hpp"
 #include "apps/dashboard/view/snapshot_json.hpp"
 #include "apps/dashboard/view/view_json.hpp"
-#include "services/core/cancellation/config.hpp"
+#include "apps/libraries/session/answer_settings.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/core/rig/rig.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/system/process/clock.hpp"
 #include "services/system/process/cpu_share.hpp"
@@ -57,29 +56,24 @@ Access access_of(const DashboardOptions& options) {
   return Access("");
 }
 
-// Canceller and drive limit the force separately: the smaller limit holds.
-double motor_limit_n(const std::filesystem::path& config) {
-  const auto canceller =
-      settings::load<cancellation::Config>(config / "cancellation.yaml", "cancellation");
-  const auto rig = settings::load<rig::RigConfig>(config / "rig.yaml", "rig");
-  return std::min(canceller.limits.max_force_n, rig.motor.limits.max_force_n);
-}
-
 FeedOptions feed_options(const DashboardOptions& options) {
   FeedOptions feed;
   feed.config = settings::load<Config>(options.config / "dashboard.yaml", "dashboard");
   feed.rig = options.rig;
   feed.blinded = options.blinded;
   feed.listener = options.recording.empty() ? "experiment" : "recorder";
+  feed.answers = session::load_answers(options.config);
   return feed;
 }
 
-Surroundings surroundings(const DashboardOptions& options) {
+Surroundings surroundings(const DashboardOptions& options, const FeedOptions& feed) {
   Surroundings around;
   around.mode = options.recording.empty() ? "live" : "recording";
   around.file = std::filesystem::path(options.recording).filename().string();
   around.domain = options.bus.domain;
-  around.motor_limit_n = motor_limit_n(options.config);
+  // Canceller and drive limit the force separately: the smaller limit holds.
+  around.motor_limit_n = std::min(feed.answers->cancellation.limits.max_force_n,
+                                  feed.answers->motor.limits.max_force_n);
   around.screen =
       settings::load<display::TrackingDisplay::Config>(options.config / "display.yaml", "display");
   return around;
@@ -103,7 +97,7 @@ class Dashboard {
         access_(access_of(options)),
         feed_options_(feed_options(options)),
         rigs_(feed_options_),
-        around_(surroundings(options)),
+        around_(surroundings(options, feed_options_)),
         server_(options.server, pages_, access_, served(options)) {
     if (options.recording.empty()) {
       listen(options);

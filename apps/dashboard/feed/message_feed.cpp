@@ -42,7 +42,9 @@ std::string text_of(const stillhand_msgs::TrialAssignment& assignment) {
 
 MessageFeed::MessageFeed(FeedOptions options)
     : options_(std::move(options)),
-      health_(options_.config, topic_plans(options_.config), service_names()) {}
+      health_(options_.config, topic_plans(options_.config), service_names()) {
+  if (options_.answers && !options_.blinded) cost_.emplace(*options_.answers);
+}
 
 bool MessageFeed::wants(const std::string& topic) const {
   if (options_.blinded && topic == topics::kTrialAssignment.name) return false;
@@ -121,8 +123,9 @@ void MessageFeed::decode(const Message& message, Use use) {
 void MessageFeed::take_stream(const Known& known, const Message& message) {
   if (known.row == &topics::kSensed) {
     decode<stillhand_msgs::Sensed>(message, [this, at_ns = message.arrived_ns](const auto& sensed) {
-      health_.chain().sensed(sensed.acquired_ns(),
-                             difference_ns(sensed.stamp_ns(), ahead_of_rig_ns("sensing")));
+      const std::int64_t stamp_ns = difference_ns(sensed.stamp_ns(), ahead_of_rig_ns("sensing"));
+      health_.chain().sensed(sensed.acquired_ns(), stamp_ns);
+      if (cost_) cost_->take(sensed, stamp_ns);
       traces_.put(sensed.tick(), Signal::kAcceleration, sensed.accel_y_m_s2());
       if (forces_hidden(at_ns)) return;
       traces_.put(sensed.tick(), Signal::kForce, sensed.force_n());
@@ -130,8 +133,10 @@ void MessageFeed::take_stream(const Known& known, const Message& message) {
     });
   } else if (known.row == &topics::kMotorCommand) {
     decode<stillhand_msgs::MotorCommand>(message, [this](const auto& command) {
-      health_.chain().command(command.tick(), command.acquired_ns(),
-                              difference_ns(command.stamp_ns(), ahead_of_rig_ns("cancellation")));
+      const std::int64_t stamp_ns =
+          difference_ns(command.stamp_ns(), ahead_of_rig_ns("cancellation"));
+      health_.chain().command(command.tick(), command.acquired_ns(), stamp_ns);
+      if (cost_) cost_->take(command, stamp_ns);
       traces_.put(command.tick(), Signal::kPredictedForce, command.predicted_force_n());
       forces_.predicted(command.tick(), command.predicted_force_n());
     });
@@ -149,9 +154,12 @@ void MessageFeed::take_stream(const Known& known, const Message& message) {
     decode<stillhand_msgs::RigTruth>(
         message, [this, at_ns = message.arrived_ns](const auto& truth) {
           health_.chain().used(truth.motor_tick(), truth.stamp_ns());
+          if (cost_) cost_->take(truth);
           if (forces_hidden(at_ns)) return;
           traces_.put(truth.tick(), Signal::kMotorForce, truth.motor_force_n());
         });
+  } else if (known.row == &topics::kRawSample && cost_) {
+    decode<stillhand_msgs::RawSample>(message, [this](const auto& raw) { cost_->take(raw); });
   } else if (known.row == &topics::kTrackingSample) {
     decode<stillhand_msgs::TrackingSample>(message, [this](const auto& sample) {
       traces_.put(sample.tick(), Signal::kTarget, sample.target_m());
@@ -171,8 +179,16 @@ void MessageFeed::look_into(const Known& known, const Message& message) {
   } else if (known.row == &topics::kPrompt) {
     decode<stillhand_msgs::Prompt>(message, [this](const auto& prompt) { prompt_ = prompt; });
   } else if (known.row == &topics::kTrialAssignment) {
-    decode<stillhand_msgs::TrialAssignment>(
-        message, [this](const auto& assignment) { condition_ = text_of(assignment); });
+    decode<stillhand_msgs::TrialAssignment>(message, [this](const auto& assignment) {
+      condition_ = text_of(assignment);
+      if (cost_) cost_->take(assignment);
+    });
+  } else if (known.row == &topics::kFeedthroughModel && cost_) {
+    decode<stillhand_msgs::FeedthroughModel>(message,
+                                             [this](const auto& model) { cost_->take(model); });
+  } else if (known.row == &topics::kAugmentedModel && cost_) {
+    decode<stillhand_msgs::AugmentedModel>(message,
+                                           [this](const auto& model) { cost_->take(model); });
   } else if (known.row == &topics::kClockOffset) {
     decode<stillhand_msgs::ClockOffset>(message, [this](const auto& offset) {
       const std::string service = offset.service().to_string();
@@ -236,6 +252,7 @@ void MessageFeed::take_control(const stillhand_msgs::TrialControl& control, std:
   if (was_over && control.session() != stillhand_msgs::SESSION_ENDING) prompt_.reset();
   if (tracks()) tracked_ns_ = at_ns;
   control_ = control;
+  if (cost_) cost_->take(control);
   health_.set_running(is_running(control.session()), at_ns);
 }
 

@@ -15,6 +15,7 @@
 #include "apps/dashboard/core/force_record.hpp"
 #include "apps/dashboard/core/qos_mismatches.hpp"
 #include "apps/dashboard/core/traces.hpp"
+#include "apps/dashboard/feed/cost_so_far.hpp"
 #include "idl/clock.h"
 #include "idl/recording.h"
 #include "idl/session.h"
@@ -44,6 +45,8 @@ struct FeedOptions {
   std::uint32_t rig = 1;
   bool blinded = true;                ///< data that reveal a trial's condition are not shown
   std::string listener = "recorder";  ///< process on whose host the arrivals were stamped
+  /// The session's settings, for what lateness costs; none: it is not computed.
+  std::optional<session::AnswerConfigs> answers = {};
 };
 
 /// The newest reports of a process.
@@ -118,6 +121,8 @@ class MessageFeed {
   [[nodiscard]] const std::deque<HeardEvent>& events() const noexcept { return events_; }
   [[nodiscard]] const Traces& traces() const noexcept { return traces_; }
   [[nodiscard]] const ForceRecord& forces() const noexcept { return forces_; }
+  /// None while blinded: it reveals whether the motor cancels.
+  [[nodiscard]] const std::optional<CostSoFar>& cost() const noexcept { return cost_; }
   [[nodiscard]] const QosMismatches& qos_mismatches() const noexcept { return qos_mismatches_; }
   [[nodiscard]] bool replayed() const noexcept { return replayed_; }
   /// Which parts of the rig are devices, in its own words; empty: none, or it has not said so yet.
@@ -166,6 +171,7 @@ class MessageFeed {
   std::int64_t emergency_ns_ = 0;
   Traces traces_;
   ForceRecord forces_;
+  std::optional<CostSoFar> cost_;
   QosMismatches qos_mismatches_;
   std::optional<std::uint32_t> rig_writer_;
   std::string rig_parts_;

@@ -26,6 +26,7 @@ MessageFeed& Rigs::feed_of(std::uint32_t writer, std::uint32_t rig) {
   if (rig == 0 || !is_stream_.at(writer) || feeds_.size() >= kMostRigs) return shown();
   FeedOptions options = options_;
   options.rig = rig;
+  options.answers.reset();  // its line has no cost
   MessageFeed& fresh = feeds_.emplace(rig, std::move(options)).first->second;
   for (const Source& source : sources_) fresh.add(source);
   return fresh;

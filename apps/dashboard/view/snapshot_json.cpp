@@ -161,6 +161,7 @@ std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, s
                 {"topics", topics_json(feed, now_ns)},
                 {"jitter_edges_us", jitter_edges_us()},
                 {"chain", chain_json(health.chain())},
+                {"cost", cost_json(feed)},
                 {"services", services_json(feed, now_ns)},
                 {"hosts", hosts_json(feed)},
                 {"recorders", recorders_json(feed, now_ns)},

@@ -85,6 +85,27 @@ Json graph_json(const MessageFeed& feed) {
   return {{"topics", std::move(all)}, {"qos_mismatches", std::move(mismatches)}};
 }
 
+Json cost_json(const MessageFeed& feed) {
+  if (!feed.cost()) {
+    return {{"why", "hidden, since it reveals the condition (--unblinded shows it)"}};
+  }
+  const std::optional<Cost>& cost = feed.cost()->cost();
+  Json json{{"why", feed.cost()->why_none()}};
+  if (!cost) return json;
+  const session::ForceSums& sums = cost->sums;
+  json["trial"] = cost->trial.number;
+  json["length_s"] = sums.ticks * kControlPeriod_s;
+  json["left_n"] = number(sums.force_n(sums.left));
+  json["lateness_n"] = number(sums.force_n(sums.lateness));
+  json["limits_n"] = number(sums.force_n(sums.limits));
+  json["sensor_n"] = number(sums.force_n(sums.sensor));
+  json["rest_n"] = number(sums.force_n(sums.rest));
+  for (std::size_t i = 0; i < kLateNames.size(); ++i) {
+    json["late_n"][kLateNames[i]] = number(sums.force_n(cost->late[i]));
+  }
+  return json;
+}
+
 Json spectrum_json(const ForceRecord& record) {
   const ResidualSpectrum spectrum = residual_spectrum(record);
   if (spectrum.segments == 0) return {};

@@ -21,6 +21,8 @@ inline double us(std::int64_t ns) { return static_cast<double>(ns) / 1e3; }
 /// The catalogue as a graph: writers and readers of each topic, the counts of each reader, and
 /// endpoints that cannot match.
 Json graph_json(const MessageFeed& feed);
+/// Eq. DB-7: what lateness costs, or `why` nothing can be said of the trial that runs.
+Json cost_json(const MessageFeed& feed);
 /// Eq. DB-6; null without a segment.
 Json spectrum_json(const ForceRecord& record);
 /// Trials and marks, in seconds from the beginning; `at_s` of a mark is an instant of /snapshot?at=

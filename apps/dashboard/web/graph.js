@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The graph of processes and topics: which process is missing, which edge is late.
+import { costInWords, costOf } from "/cost.js";
 import { clock, create, draw, element, mark, short, write } from "/elements.js";
 import { faultsOf, gone } from "/graph_faults.js";
 import { layOut } from "/graph_layout.js";
@@ -124,6 +125,8 @@ export class Graph {
 
   show(snapshot) {
     const { services, graph } = snapshot;
+    this.cost = snapshot.cost;
+    costInWords(this.cost).forEach((words, i) => write(element("cost").children[i], words));
     if (graph) {
       const made = JSON.stringify(graph.topics.map(({ topic }) => topic));
       this.graph = graph;
@@ -167,6 +170,11 @@ export class Graph {
     mark(this.svg, "aria-label", `Processes and topics along the control chain. ${going ? absent : "no session runs"}; ${active === 0 ? "no connection is at fault now" : `${active} fault${active === 1 ? "" : "s"} of connections now, listed below`}`);
   }
 
+  // On the way of the motor's force, at the process that keeps the next one waiting.
+  costAt({ writer, reader }) {
+    return { cancellation: "sensing", rig: "cancellation" }[reader] === writer ? costOf(this.cost, writer) : "";
+  }
+
   // The same as a table.
   list() {
     const rows = this.faults.map((fault) => {
@@ -176,7 +184,7 @@ export class Graph {
       const head = create("th", edge);
       head.scope = "row";
       const since = fault.since_ms ? clock(fault.since_ms) : fault.kind === "unmatched" ? "" : "before this page opened";
-      row.append(head, create("td", fault.active ? "now" : "was", fault.active ? "l bad" : "l"), create("td", fault.text, "l"), create("td", since),
+      row.append(head, create("td", fault.active ? "now" : "was", fault.active ? "l bad" : "l"), create("td", fault.text, "l"), create("td", this.costAt(fault), "l"), create("td", since),
         create("td", fault.last_ms ? clock(fault.last_ms) : "–"));
       return row;
     });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The strip, which is read from across the room.
+import { costOfAlarm } from "/cost.js";
 import { SIGN_IN, clock, element, short, span, write } from "/elements.js";
 
 const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–", replay: "▶" };
@@ -45,10 +46,15 @@ function ended({ active, watch }, state) {
   return state === "ending" ? "; the session is over" : "; back now";
 }
 
-function stripOfAlarms(alarms, state, now, where) {
+// "; cost so far: 0.08 N"
+function behind(text) {
+  return text === "" ? "" : `; ${text}`;
+}
+
+function stripOfAlarms(alarms, { cost, session: { state }, now_ms: now }, where) {
   const first = alarms[0];
   const others = alarms.length > 1 ? `; ${alarms.length - 1} more` : "";
-  strip(first.level, WORDS[first.level], what(first) + ended(first, state) + others + where, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
+  strip(first.level, WORDS[first.level], what(first) + ended(first, state) + behind(costOfAlarm(cost, first)) + others + where, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
 }
 
 // Adds the QoS mismatches, which have no threshold and cannot be acknowledged. Not every snapshot holds the graph.
@@ -89,7 +95,7 @@ export function showStatus(snapshot) {
   } else if (second !== undefined) {
     strip("critical", "Second writer", `${second.peer} also writes ${short(second.topic)}: nobody listens to it, and the interlock opens`, `since ${clock(second.at_ms)}\n${span(now - second.at_ms)} ago`);
   } else if (shown.length > 0) {
-    stripOfAlarms(shown, session.state, now, recording ? `; ${title}` : "");
+    stripOfAlarms(shown, snapshot, recording ? `; ${title}` : "");
   } else if (session.state === "running" || session.state === "paused") {
     const paused = session.state === "paused" || session.paused ? "no trial begins until Start is pressed; " : "";
     const before = alarms.length > 0 ? `; ${alarms.length} earlier alarm${alarms.length === 1 ? "" : "s"}, ended` : "";

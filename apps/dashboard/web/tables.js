@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables, which are read from close by.
+import { costOfAlarm } from "/cost.js";
 import { clock, create, element, short, write } from "/elements.js";
 import { what } from "/status.js";
 
@@ -122,7 +123,7 @@ export class Tables {
   show(snapshot) {
     this.showProtocol(snapshot.session);
     this.showSession(snapshot);
-    this.showAlarms(snapshot.alarms);
+    this.showAlarms(snapshot);
     for (const topic of snapshot.topics) this.showTopic(topic, snapshot);
     const { sensed, command, motor } = snapshot.chain;
     for (const [name, times] of [["sensed", sensed], ["motor command", command], ["first use by the rig", motor]]) {
@@ -193,12 +194,14 @@ export class Tables {
     });
   }
 
-  showAlarms(alarms) {
+  showAlarms({ alarms, cost }) {
     const items = alarms.map((alarm) => {
       const item = create("li");
       item.dataset.level = alarm.level;
       item.append(create("b", alarm.level), create("span", what(alarm)));
       if (alarm.count > 1) item.append(create("span", `${alarm.count} times`, "faint"));
+      const paid = costOfAlarm(cost, alarm);
+      if (paid !== "") item.append(create("b", paid, "cost"));
       if (!alarm.active) item.append(create("span", "ended", "faint"));
       if (alarm.acknowledged && alarm.watch !== "qos") item.append(create("span", "acknowledged", "faint"));
       item.append(create("time", clock(alarm.since_ms)));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the graph's nodes stand, and which of its edges are at fault: the two scripts of the page that only compute.
+// Where the graph's nodes stand, which of its edges are at fault, and what lateness costs: scripts of the page that only
+// compute.
 import assert from "node:assert/strict";
 import test from "node:test";
+import { costInWords, costOf, costOfAlarm } from "../../../apps/dashboard/web/cost.js";
 import { faultsOf, gone } from "../../../apps/dashboard/web/graph_faults.js";
 import { layOut } from "../../../apps/dashboard/web/graph_layout.js";
 
@@ -98,4 +100,24 @@ test("a process without a life sign for longer than its lease is gone", () => {
   assert.ok(gone({ service: "rig" }));
   assert.ok(gone({ service: "rig", state: "running", silent_ms: 301 }));
   assert.ok(!gone({ service: "rig", state: "running", silent_ms: 299 }));
+});
+
+const COST = { why: "", trial: 3, length_s: 12.6, left_n: 1.24, lateness_n: 0.081, limits_n: 0, sensor_n: 0.001, rest_n: 1.158,
+  late_n: { sensing: 0.08, cancellation: 0.001, rig: 0, interlock: 0 } };
+
+test("the cost stands at the process that kept the motor waiting, and nowhere else", () => {
+  assert.equal(costOf(COST, "sensing"), "cost so far: 0.08 N");
+  for (const process of ["cancellation", "rig", "display"]) assert.equal(costOf(COST, process), "");
+  const alarm = { watch: "silent", subject: "stillhand/sensed", writer: "sensing" };
+  assert.equal(costOfAlarm(COST, alarm), "cost so far: 0.08 N");
+  assert.equal(costOfAlarm(COST, { watch: "missing", subject: "sensing", writer: "" }), "cost so far: 0.08 N");
+  assert.equal(costOfAlarm(COST, { ...alarm, watch: "latency" }), "");
+  assert.equal(costOfAlarm({ why: "no trial yet" }, alarm), "");
+});
+
+test("the cost in words says how much of what, from whom, or why nothing can be said", () => {
+  assert.equal(costInWords(COST).join(""), "Cost of lateness so far: 0.08 N of the 1.24 N that trial 3 leaves after 13 s, from sensing 0.08 N. " +
+    "Not from lateness: 1.16 N from model and body, 0.00 N from limits, 0.00 N from the sensor.");
+  assert.match(costInWords({ ...COST, why: "no trial yet" }).join(""), /trial 3 left \(now: no trial yet\)/);
+  assert.equal(costInWords({ why: "no trial yet" }).join(""), "Cost of lateness in newtons: no trial yet.");
 });

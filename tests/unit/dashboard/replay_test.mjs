@@ -9,7 +9,7 @@ import test from "node:test";
 
 const WEB = new URL("../../../apps/dashboard/web/", import.meta.url);
 const folder = mkdtempSync(join(tmpdir(), "stillhand-page-"));
-for (const name of ["elements.js", "status.js", "actions.js"]) {
+for (const name of ["elements.js", "cost.js", "status.js", "actions.js"]) {
   const text = readFileSync(new URL(name, WEB), "utf8").replaceAll('from "/', 'from "./');
   writeFileSync(join(folder, name.replace(".js", ".mjs")), text.replaceAll('.js"', '.mjs"'));
 }
