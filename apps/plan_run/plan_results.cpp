@@ -166,7 +166,7 @@ std::string plan_table(const Planned& planned) {
   }
   for (const auto& [i, j] : out_of_reach(planned)) {
     text +=
-        fmt::format("no motion of this platform tells {} from {} in {:g} s ({} designs tried)\n",
+        fmt::format("no motion of this platform separates {} from {} in {:g} s ({} designs tried)\n",
                     name_at(planned, i), name_at(planned, j), planned.seconds, plan.tried);
   }
   for (const std::string& line : planned.advice) text += fmt::format("note: {}\n", line);
