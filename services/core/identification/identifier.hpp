@@ -20,6 +20,7 @@ struct Config {
   bool refine = false;                 ///< Eq. ID-6 after the paper's fit
   double max_conversion_error = 0.05;  ///< bound on Eq. ID-11
   std::int64_t expected_sign = -1;     ///< Eq. ID-21
+  double false_alarms_h = 0.1;         ///< of the watch on the model, cancellation Eq. CC-22
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
@@ -34,6 +35,9 @@ struct Config {
         "expected_sign", self.expected_sign, Range{-1.0, 1.0},
         "[-] sign of a live model's gain at 0.7 Hz; -1: an idle hand stays behind the seat (paper "
         "IV-A: phase 180 degrees); 0: any");
+    visit(
+        "false_alarms_h", self.false_alarms_h, Range{0.0, 10.0},
+        "[1/h] false alarms of the watch on the model in use, an hour of cancelling; 0: no watch");
   }
 };
 

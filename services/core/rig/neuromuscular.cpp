@@ -41,14 +41,15 @@ Neuromuscular::Neuromuscular(const NeuromuscularConfig& config, std::uint64_t se
       unmeasured_(noise(seed, kUnmeasuredStream,
                         {kUnmeasuredLow_hz, kUnmeasuredHigh_hz, config.unmeasured_force_n_s2_m})),
       resistance_delay_(static_cast<std::size_t>(ticks_in(config.motor_resistance_delay_s))),
-      wander_(config.wander * wander_noise_()) {}
+      wander_(config.wander * wander_noise_()),
+      until_change_(ticks_in(config.change_at_s)) {}
 
 void Neuromuscular::update(bool pegged) noexcept {
   const double steps =
       static_cast<double>(kUpdate_ticks) * kControlPeriod_s / config_.wander_time_s;
   const double keep = std::exp(-steps);
   wander_ = keep * wander_ + config_.wander * std::sqrt(1.0 - keep * keep) * wander_noise_();
-  double log_stiffness = wander_;
+  double log_stiffness = wander_ + (until_change_ > 0 ? 0.0 : std::log1p(config_.change));
   if (!pegged) {
     const double growth = config_.stiffening_by_vibration_s2_m * vibration_m_s2_.value() +
                           config_.stiffening_by_motor_n * motor_n_.value();
@@ -61,6 +62,7 @@ void Neuromuscular::update(bool pegged) noexcept {
 Neuromuscular::Output Neuromuscular::step(const Input& input) noexcept {
   vibration_m_s2_.step(input.acceleration_m_s2);
   motor_n_.step(input.motor_force_n);
+  if (until_change_ > 0) --until_change_;
   if (--until_update_ < 0) {
     until_update_ = kUpdate_ticks - 1;
     update(input.pegged);

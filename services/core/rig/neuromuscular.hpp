@@ -21,7 +21,7 @@ struct StiffnessLevels {
 };
 
 /// Forces and stiffness that nerves and muscles add, but for the reflex, which needs the chain.
-/// Source: METHOD Eq. RG-27, 28, 30, 31 and 32.
+/// Source: METHOD Eq. RG-27, 28, 30, 31, 32 and 40.
 /// Pure: no clock, no I/O; the same seed gives the same bits; step() never allocates or throws.
 class Neuromuscular {
  public:
@@ -57,6 +57,7 @@ class Neuromuscular {
   double wander_;  ///< logarithm
   int level_ = 0;
   std::int64_t until_update_ = 0;
+  std::int64_t until_change_;
 };
 
 /// Stretch reflex of the shoulder, Eq. RG-29, for one chain: muscle(k d + c d') of the delayed

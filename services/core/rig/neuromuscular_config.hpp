@@ -13,6 +13,8 @@ struct NeuromuscularConfig {
   double stiffening_by_motor_n = 0.0;
   double wander = 0.0;
   double wander_time_s = 60.0;
+  double change = 0.0;
+  double change_at_s = 0.0;
   double reflex_stiffness_n_m = 0.0;
   double reflex_damping_n_s_m = 0.0;
   double reflex_delay_s = 0.04;
@@ -36,6 +38,11 @@ struct NeuromuscularConfig {
           "[-] standard deviation of the logarithm of the same stiffness over time, Eq. RG-28");
     visit("wander_time_s", self.wander_time_s, Range{1.0, 3600.0},
           "[s] time constant of that wander");
+    visit(
+        "change", self.change, Range{-0.5, 3.0},
+        "[-] growth of the same stiffness, once and for good: another posture or grip, Eq. RG-40");
+    visit("change_at_s", self.change_at_s, Range{0.0, 100000.0},
+          "[s] when it changes, from the session's first tick");
     visit("reflex_stiffness_n_m", self.reflex_stiffness_n_m, Range{0.0, 1000.0},
           "[N/m] stretch reflex of the shoulder: force a metre of stretch, Eq. RG-29");
     visit("reflex_damping_n_s_m", self.reflex_damping_n_s_m, Range{0.0, 100.0},

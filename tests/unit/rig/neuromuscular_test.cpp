@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nerves and muscles add to the body: Eq. RG-27 to RG-32.
+// What nerves and muscles add to the body: Eq. RG-27 to RG-32, RG-40.
 #include "services/core/rig/neuromuscular.hpp"
 
 #include <gtest/gtest.h>
@@ -62,6 +62,21 @@ TEST(NeuromuscularTest, SofteningEndsAtItsBound) {
     level = sut.step({10.0 * shaking_m_s2(n), 0.0, false}).stiffness_level;
   }
   EXPECT_EQ(level, StiffnessLevels::kLowest);
+}
+
+// Eq. RG-40, in steps of 0.02 of the logarithm, a tenth of a second apart.
+TEST(NeuromuscularTest, TheStiffnessChangesOnceAndForGood) {
+  NeuromuscularConfig config;
+  config.change = 0.6;
+  config.change_at_s = 2.0;
+  for (const bool pegged : {false, true}) {
+    Neuromuscular sut(config, 1);
+    for (int n = 0; n < 10 * kSecond; ++n) {
+      const int level = sut.step({0.0, 0.0, pegged}).stiffness_level;
+      if (n < 2 * kSecond - 1) ASSERT_EQ(level, 0) << n;
+      if (n > 2 * kSecond + 100) ASSERT_NEAR(level * StiffnessLevels::kStep, std::log(1.6), 0.01);
+    }
+  }
 }
 
 // Eq. RG-28.  5,000 s hold 5000 / (2 * 5) = 500 independent values: the deviation is known to

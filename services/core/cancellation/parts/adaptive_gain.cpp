@@ -5,18 +5,11 @@
 #include <cmath>
 
 #include "services/core/contract/tick.hpp"
-#include "services/core/contract/units.hpp"
 
 namespace stillhand::cancellation {
 namespace {
 
 constexpr double kDt = kControlPeriod_s;
-// Paper III-C: the platform moves between 0.7 and 2 Hz; the middle in log frequency is 1.2 Hz.
-constexpr double kBandLow_hz = 0.5;
-constexpr double kBandHigh_hz = 3.0;
-constexpr double kMiddle_rad_s = kTwoPi * 1.2;
-// The derivative is one below this frequency, well above the band.
-constexpr double kDerivativeLag_s = 1.0 / (kTwoPi * 15.0);
 // Eq. CC-11: slow against the operator's own motion, fast against a hand that tightens.
 constexpr double kConvergence_s = 15.0;
 constexpr double kPower_s = 10.0;
@@ -32,40 +25,19 @@ constexpr double kBackOff_s = 0.5;
 
 }  // namespace
 
-AdaptiveGain::AdaptiveGain()
-    : band_r0_(2, kBandLow_hz, kBandHigh_hz, kControlRateHz), band_x_(band_r0_) {}
-
-AdaptiveGain::AdaptiveGain(const HandCompliance& compliance) : AdaptiveGain() {
-  const double natural_rad_s = std::sqrt(compliance.stiffness_n_m / compliance.mass_kg);
-  lag_.emplace(natural_rad_s, compliance.damping_n_s_m / (2.0 * natural_rad_s * compliance.mass_kg),
-               kDt);
-  compliance_m_n_ = 1.0 / compliance.stiffness_n_m;
-  lever_m_ = compliance.lever_m;
-}
-
 void AdaptiveGain::reset() noexcept {
-  if (lag_) lag_->reset();
-  band_r0_.reset();
-  band_x_.reset();
-  slow_n_ = slow_r0_ = 0.0;
+  if (motion_) motion_->reset();
+  quadrature_.reset();
 }
 
 double AdaptiveGain::step(double predicted_n, double theta_rad, bool acting) noexcept {
-  if (!lag_) return predicted_n;
-  const double blend = kDt / (kDerivativeLag_s + kDt);
-  const auto derivative = [blend](double value, double& slow) {
-    slow += blend * (value - slow);
-    return (value - slow) / (kDerivativeLag_s * kMiddle_rad_s);
-  };
-  const double r0 = band_r0_.step(lag_->step(predicted_n * compliance_m_n_).x);
-  const Pair r{r0, derivative(r0, slow_r0_)};
-  const double e = band_x_.step(lever_m_ * theta_rad);
+  if (!motion_) return predicted_n;
+  const auto [r, e] = motion_->step(predicted_n, theta_rad);
   if (acting) {
     adapt(r, e);
     back_off(r, e);
   }
-  const double quadrature_n = derivative(predicted_n, slow_n_);
-  return weights_[0] * predicted_n + weights_[1] * quadrature_n;
+  return weights_[0] * predicted_n + weights_[1] * quadrature_.step(predicted_n);
 }
 
 void AdaptiveGain::adapt(const Pair& r, double e) noexcept {

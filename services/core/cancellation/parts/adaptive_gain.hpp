@@ -4,9 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "services/core/cancellation/control_model.hpp"
-#include "services/core/signal/band_pass.hpp"
-#include "services/core/signal/second_order_lag.hpp"
+#include "services/core/cancellation/explained_motion.hpp"
 
 namespace stillhand::cancellation {
 
@@ -26,12 +24,12 @@ namespace stillhand::cancellation {
 /// Pure; step() neither allocates nor throws.
 class AdaptiveGain {
  public:
-  using Pair = std::array<double, 2>;
+  using Pair = ExplainedMotion::Pair;
 
   /// Weights stay at 1 and 0.
-  AdaptiveGain();
+  AdaptiveGain() = default;
   /// @param compliance  sound, see check_model()
-  explicit AdaptiveGain(const HandCompliance& compliance);
+  explicit AdaptiveGain(const HandCompliance& compliance) : motion_(compliance) {}
 
   /// One tick.
   /// @param predicted_n  f^
@@ -50,13 +48,8 @@ class AdaptiveGain {
   void adapt(const Pair& r, double e) noexcept;
   void back_off(const Pair& r, double e) noexcept;
 
-  std::optional<signal::SecondOrderLag> lag_;
-  double compliance_m_n_ = 0.0;
-  double lever_m_ = 0.0;
-  signal::BandPass band_r0_;
-  signal::BandPass band_x_;
-  double slow_n_ = 0.0;  ///< f^ behind the lag of its derivative
-  double slow_r0_ = 0.0;
+  std::optional<ExplainedMotion> motion_;
+  Quadrature quadrature_;  ///< of f^
   Pair weights_{1.0, 0.0};
   std::array<double, 3> power_{};  ///< R_00, R_01, R_11 [m^2]
   double moved_ = 0.0;             ///< mean of e^2 [m^2]
