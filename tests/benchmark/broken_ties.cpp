@@ -2,10 +2,12 @@
 // Ties of planted effects, and what breaks them: the run that plan-run designs, against a
 // repetition of the recorded motion.
 //   build/tests/broken_ties --ties 10 --seed 1
+//   build/tests/broken_ties --rig --seed 7001 --cell-noise 0.1
 // A recording is diagnosed; where the planted kind ties with another one, a run of --seconds is
 // designed, made on the same body with other noise, and judged; then a run of --repeat-seconds in a
 // motion like the first one.  "right": the planted kind alone is left; "wrong": another one is.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <set>
 #include <string>
@@ -14,8 +16,8 @@
 #include "services/core/diagnosis/working_set.hpp"
 #include "services/core/next_run/design.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
+#include "tests/benchmark/tied_subject.hpp"
 #include "tests/planted/series.hpp"
-#include "tests/planted/to_measurement.hpp"
 
 namespace {
 
@@ -29,27 +31,16 @@ struct Options {
   double strength = 0.1;
   double snr_db = 20.0;
   std::size_t most = 200;
+  std::vector<std::size_t> only;
+  bool on_rig = false;
+  benchmark::TiedRig rig;
 };
 
 struct Counts {
   int right = 0, wrong = 0, open = 0;
 };
 
-planted::Excitation as_given(const motion::MotionTrajectory& motion) {
-  planted::Excitation given;
-  const Tick ticks = 2 * motion.ramp_ticks() + motion.duration_ticks();
-  for (Tick n = 0; n < ticks; ++n) given.given_m_s2.push_back(motion.at(n).acceleration_m_s2);
-  given.given_start_s = -static_cast<double>(motion.ramp_ticks()) * kControlPeriod_s;
-  return given;
-}
-
-// The same body and effect in another run.
-diagnosis::Measurement made(std::uint64_t seed, planted::Spec spec,
-                            const planted::Excitation& excitation, double seconds, double rate_hz) {
-  spec.twice = true;
-  spec.again_length_s = seconds;
-  spec.again_excitation = excitation;
-  const diagnosis::Measurement run = planted::to_measurement(*planted::draw(seed, spec).again);
+diagnosis::Measurement at_rate(const diagnosis::Measurement& run, double rate_hz) {
   const std::size_t factor = diagnosis::rate_factor(run, rate_hz);
   return factor == 1 ? run : diagnosis::decimated(run, factor);
 }
@@ -75,7 +66,7 @@ next_run::Bounds bounds_of(double seconds) {
   return {session::motion_profile(session::identification_trial(protocol)), {}};
 }
 
-int run(const Options& options) {
+planted::SeriesPlan series_of(const Options& options) {
   planted::SeriesPlan plan;
   plan.seed = options.seed;
   plan.strengths = {options.strength};
@@ -92,47 +83,59 @@ int run(const Options& options) {
                 "asymmetry",
                 "output_saturation",
                 "bilinear"};
+  return plan;
+}
+
+// The i-th of the series.
+benchmark::TiedSubject subject_of(const Options& options, std::size_t i) {
+  if (options.on_rig) return benchmark::rig_subject(options.seed + i, options.rig);
+  const auto [seed, spec] = series_of(options).at(i);
+  return benchmark::planted_subject(seed, spec);
+}
+
+int run(const Options& options) {
   Counts designed, repeated;
   std::set<std::set<std::string>> seen;
   std::size_t ties = 0;
   double expected = 0.0;
   for (std::size_t i = 0; i < options.most && ties < options.ties; ++i) {
-    const auto [seed, spec] = plan.at(i);
-    const planted::Draft draft = planted::draw(seed, spec);
-    const std::string kind(planted::name_of(draft.truth.effects.front().kind));
+    if (!options.only.empty() && std::ranges::find(options.only, i) == options.only.end()) continue;
+    const benchmark::TiedSubject subject = subject_of(options, i);
+    const std::string& kind = subject.kind;
     diagnosis::DiagnoseOptions asked;
     asked.for_each = benchmark::on_all_cores;
-    const auto measured = planted::to_measurement(draft.recording);
-    const auto verdict = diagnosis::diagnose(measured, asked);
-    const auto working = diagnosis::working_set(measured, asked.inputs);
+    const auto verdict = diagnosis::diagnose(subject.measured, asked);
+    const auto working = diagnosis::working_set(subject.measured, asked.inputs);
     const diagnosis::Signals signals(working, asked.inputs, asked.output);
     auto candidates = next_run::tied_candidates(verdict, signals);
     std::set<std::string> kinds;
     for (const auto& each : candidates) kinds.insert(each.cause().kind);
     if (!kinds.contains(kind) || kinds.size() < 2) {
-      std::fprintf(stderr, "%zu %s: %zu candidates, %s\n", i, kind.c_str(), kinds.size(),
-                   verdict.verdict().c_str());
+      std::fprintf(stderr, "%zu %s: %s;", i, kind.c_str(), verdict.verdict().c_str());
+      for (const auto& each : verdict.effects)
+        std::fprintf(stderr, " %s", each.effect.kind.c_str());
+      std::fprintf(stderr, "; %zu candidates\n", candidates.size());
       continue;
     }
     candidates = next_run::Contest(std::move(candidates), signals).still_tied();
     // The planted kind and another one must be left; a set of kinds counts once.
     std::set<std::string> left;
     for (const auto& each : candidates) left.insert(each.cause().kind);
-    std::fprintf(stderr, "%zu %s: %zu tied%s\n", i, kind.c_str(), left.size(),
-                 left.contains(kind) ? "" : ", not the planted one");
+    std::fprintf(stderr, "%zu %s: of", i, kind.c_str());
+    for (const std::string& each : kinds) std::fprintf(stderr, " %s", each.c_str());
+    std::fprintf(stderr, " left");
+    for (const std::string& each : left) std::fprintf(stderr, " %s", each.c_str());
+    std::fprintf(stderr, "%s\n", left.contains(kind) ? "" : ", not the planted one");
     if (!left.contains(kind) || left.size() < 2 || !seen.insert(left).second) continue;
     const next_run::Contest contest(std::move(candidates), signals);
     ++ties;
     const auto best =
         next_run::best_plan(contest, working, bounds_of(options.seconds), benchmark::on_all_cores);
     const double rate_hz = contest.candidates().front().model.rate_hz;
-    const auto after =
-        contest.with(made(seed, spec, as_given(best.ride.motion), options.seconds, rate_hz));
-    const auto again =
-        contest.with(made(seed, spec, draft.truth.excitation, options.repeat_seconds, rate_hz));
+    const auto after = contest.with(at_rate(subject.again(best.ride.motion), rate_hz));
+    const auto again = contest.with(at_rate(subject.repeated(options.repeat_seconds), rate_hz));
     expected += best.probability_settled;
-    std::printf("%2zu  %-20s (%s)\n    tied:", ties, kind.c_str(),
-                draft.truth.effects.front().variant.c_str());
+    std::printf("%2zu  %-20s (%s)\n    tied:", ties, kind.c_str(), subject.variant.c_str());
     for (const auto& each : contest.candidates()) {
       std::printf(" %s;", next_run::name_of(each).c_str());
     }
@@ -180,6 +183,11 @@ int main(int argc, char** argv) {
   app.add_option("--strength", options.strength, "of the effects, of the force");
   app.add_option("--snr", options.snr_db, "of the force over the noise [dB]");
   app.add_option("--most", options.most, "recordings that are tried");
+  app.add_option("--only", options.only, "numbers of the recordings that are tried");
+  app.add_flag("--rig", options.on_rig, "the simulated rig and its undeclared effects");
+  app.add_option("--first-seconds", options.rig.seconds, "--rig: of the first recording");
+  app.add_option("--cell-noise", options.rig.noise_n_rthz, "--rig: of the load cell [N/sqrt(Hz)]");
+  app.add_flag("--passive", options.rig.passive, "--rig: an arm without forces of its own");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }
