@@ -213,23 +213,32 @@ SpreadFit fit_spread(const std::vector<Metrics>& subjects, const std::vector<Met
 
 SignatureValues signatures_of(const std::vector<Response>& first,
                               const std::vector<Response>& second) {
-  std::vector<double> gain, again, cancelled, place, log_force, delay, b, c;
+  std::vector<double> gain, again, f_c, f_c_again, cancelled, place, log_force, delay, b, c;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const Response& one = first[i];
-    if (std::isnan(one.metrics[0] + second[i].metrics[0])) continue;
-    gain.push_back(one.metrics[3] - one.metrics[6]);
-    again.push_back(second[i].metrics[3] - second[i].metrics[6]);
-    cancelled.push_back(one.observed.cancelled_share);
-    place.push_back(one.observed.c_after_b);
-    log_force.push_back(std::log(one.observed.motor_over_feedthrough));
-    delay.push_back(1000.0 * one.observed.counterforce_delay_s);
-    b.push_back(one.metrics[3]);
-    c.push_back(one.metrics[6]);
+    const Metrics& one = first[i].metrics;
+    const Metrics& two = second[i].metrics;
+    const Observed& seen = first[i].observed;
+    if (!std::isfinite(one[5] + one[8] + two[5] + two[8])) continue;
+    b.push_back(one[3]);
+    c.push_back(one[6]);
+    gain.push_back(one[3] - one[6]);
+    again.push_back(two[3] - two[6]);
+    f_c.push_back(one[8] - one[5]);
+    f_c_again.push_back(two[8] - two[5]);
+    cancelled.push_back(seen.cancelled_share);
+    place.push_back(seen.c_after_b);
+    log_force.push_back(std::log(seen.motor_over_feedthrough));
+    delay.push_back(1000.0 * seen.counterforce_delay_s);
   }
   using statistics::standard_deviation;
-  return {correlation(gain, again),  correlation(gain, cancelled),
-          correlation(gain, place),  standard_deviation(log_force),
-          standard_deviation(delay), standard_deviation(c) / standard_deviation(b)};
+  return {correlation(gain, again),
+          correlation(f_c, f_c_again),
+          correlation(gain, cancelled),
+          correlation(f_c, place),
+          correlation(c, b),
+          standard_deviation(log_force),
+          standard_deviation(delay),
+          standard_deviation(c) / standard_deviation(b)};
 }
 
 double people_needed(std::size_t signature, double value, double other) {

@@ -40,13 +40,15 @@ struct Signature {
   const char* name;
   bool correlation;  ///< otherwise a deviation, or a ratio of two
 };
-inline constexpr std::array<Signature, 6> kSignatures{
-    {{"B-C with a second B-C", true},
-     {"B-C with the force cancelled", true},
-     {"B-C with C's place after B", true},
+inline constexpr std::array<Signature, 8> kSignatures{
+    {{"RMS error: B-C with a second B-C", true},
+     {"f_c: B-C with a second B-C", true},
+     {"RMS error: B-C with the force cancelled", true},
+     {"f_c: C-B with C's place after B", true},
+     {"RMS error: C with B", true},
      {"SD of ln motor force over feedthrough force", false},
      {"SD of the delay of the counterforce [ms]", false},
-     {"SD of C over SD of B", false}}};
+     {"RMS error: SD of C over SD of B", false}}};
 using SignatureValues = std::array<double, kSignatures.size()>;
 
 SignatureValues signatures_of(const std::vector<Response>& first,

@@ -129,25 +129,33 @@ report::Table signature_table(const Spread& spread) {
   report::Table table;
   table.caption =
       "What a laboratory would measure if each person tracked B and C twice with one model, over "
-      "the same people: correlations between people, then deviations. The last columns: people "
-      "for whom the best signature is unlike the chain's, and unlike that of the cause most alike, "
-      "in four studies of five at a level of 0.05.";
-  table.header = {"cause"};
-  for (const Signature& signature : kSignatures) table.header.emplace_back(signature.name);
-  table.header.insert(table.header.end(),
-                      {"people, from the chain", "people, from the most alike"});
-  table.align = std::vector(table.header.size(), report::Align::kLeft);
-  for (std::size_t i = 0; i < spread.judged.size(); ++i) {
-    const SpreadJudged& one = spread.judged[i];
-    std::vector<Cell> row{one.fit.name};
-    for (const double value : one.signatures) row.emplace_back(number(value, 2));
-    if (i > 0) row.emplace_back(people(tells_apart(one.signatures, spread.judged[0].signatures)));
-    if (i > 1) {
-      const auto alike = most_alike(spread, i);
-      row.emplace_back(spread.judged[alike].fit.name + ": " +
-                       people(tells_apart(one.signatures, spread.judged[alike].signatures)));
-    }
+      "the same people: correlations between people, then deviations.";
+  table.header = {"signature"};
+  for (const SpreadJudged& one : spread.judged) table.header.push_back(one.fit.name);
+  for (std::size_t s = 0; s < kSignatures.size(); ++s) {
+    std::vector<Cell> row{kSignatures[s].name};
+    for (const SpreadJudged& one : spread.judged) row.emplace_back(number(one.signatures[s], 2));
     table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+report::Table people_table(const Spread& spread) {
+  report::Table table;
+  table.caption =
+      "People for whom the best signature is unlike the chain's, and unlike that of the cause most "
+      "alike, in four studies of five at a level of 0.05.";
+  table.header = {"cause", "from the chain", "from the cause most alike", ""};
+  table.align = std::vector(4, report::Align::kLeft);
+  for (std::size_t i = 1; i < spread.judged.size(); ++i) {
+    const SpreadJudged& one = spread.judged[i];
+    const auto apart = [&](const SpreadJudged& other) {
+      return people(tells_apart(one.signatures, other.signatures));
+    };
+    table.rows.push_back({one.fit.name, apart(spread.judged.front())});
+    if (i == 1) continue;
+    const SpreadJudged& alike = spread.judged[most_alike(spread, i)];
+    table.rows.back().insert(table.rows.back().end(), {alike.fit.name, apart(alike)});
   }
   return table;
 }
@@ -219,6 +227,7 @@ void add_spread(report::Page& page, const Spread& spread, const report::Drawing&
   page.table(judged_table(spread));
   page.section("What a laboratory could tell apart", 3);
   page.table(signature_table(spread));
+  page.table(people_table(spread));
   page.section("The causes of spread", 3);
   page.table(causes_table(spread_causes()));
 }

@@ -8,7 +8,7 @@ namespace stillhand::study {
 namespace {
 
 // The best causes that a laboratory would want to tell apart.
-constexpr std::size_t kJudgedCauses = 4;
+constexpr std::size_t kJudgedCauses = 6;
 
 class SpreadStudy {
  public:
