@@ -13,6 +13,7 @@
 #include "apps/diagnose/broken_tie.hpp"
 #include "apps/diagnose/diagnose_options.hpp"
 #include "apps/diagnose/diagnosis_json.hpp"
+#include "apps/diagnose/lateness.hpp"
 #include "apps/diagnose/page/diagnosis_report.hpp"
 #include "apps/libraries/measurement/read_options.hpp"
 #include "apps/libraries/report/command_line.hpp"
@@ -30,6 +31,7 @@
 #include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/system/process/run_jobs.hpp"
+#include "services/system/process/shipped.hpp"
 #include "services/system/process/stop.hpp"
 
 namespace stillhand::diagnose {
@@ -43,6 +45,7 @@ struct Arguments {
   std::filesystem::path json;
   std::filesystem::path report;
   std::filesystem::path plan;
+  std::filesystem::path config = runtime::shipped("deploy/config");
   int stability = 0;
 };
 
@@ -118,6 +121,8 @@ int run(const Arguments& arguments) {
       read_recordings(arguments.recordings, arguments.read, arguments.options);
   const std::optional<BrokenTie> tie = tie_of(arguments, parts);
   const diagnosis::Measurement measurement = measurement::join(std::move(parts));
+  const std::vector<RecordedSplit> splits =
+      recorded_splits(arguments.recordings, arguments.read.trial, arguments.config);
   report::ProgressLine progress;
   diagnosis::DiagnoseOptions options = arguments.options;
   options.for_each = runtime::on_all_cores;
@@ -142,10 +147,12 @@ int run(const Arguments& arguments) {
                    diagnosis::model_json(result.model, result.carried, result.baseline.model));
   }
   if (files.wants("--json")) {
-    files.set_json("--json", tie ? with_tie(diagnosis_json(result), *tie) : diagnosis_json(result));
+    const std::string json = with_splits(diagnosis_json(result), splits);
+    files.set_json("--json", tie ? with_tie(json, *tie) : json);
   }
-  if (folder) write_report(result, measurement, arguments.recordings, *folder);
+  if (folder) write_report(result, measurement, arguments.recordings, *folder, splits);
   files.publish();
+  std::fputs(splits_table(splits).c_str(), stdout);
   std::fputs(diagnosis_table(result).c_str(), stdout);
   if (tie) std::fputs(tie_table(*tie).c_str(), stdout);
   folder ? report::say_report(arguments.report)
@@ -190,6 +197,14 @@ void add_diagnose_command(CLI::App& cli, int& status) {
                    "plan.json of `stillhand plan-run`: the last REC is its run, and the verb says "
                    "which of the tied causes is left")
       ->check(settings::check_name);
+  verb->add_flag("--lateness", arguments->read.lateness,
+                 "take the channels of lateness of a session (age of the answers, lost ticks, ...) "
+                 "for candidates too");
+  verb->add_option("--config", arguments->config,
+                   "folder of the settings that a session ran with, to split what its motor left "
+                   "into causes")
+      ->check(settings::check_name)
+      ->capture_default_str();
   measurement::add_heaviest_option(*verb, arguments->options.heaviest_kg);
   verb->add_option("--save", arguments->save,
                    "file for the diagnosed model, for `stillhand predict`")

@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/result_files.hpp"
 #include "apps/libraries/report/text.hpp"
+#include "apps/libraries/session/lateness_channels.hpp"
 #include "apps/recordings/export.hpp"
 #include "apps/recordings/info.hpp"
 #include "apps/recordings/recover.hpp"
@@ -19,6 +21,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/recording/mcap/compression.hpp"
 #include "services/core/recording/mcap/mcap_loss.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "services/system/process/remark.hpp"
 #include "services/system/process/stop.hpp"
 
@@ -144,7 +147,7 @@ void add_recover(CLI::App& cli, int& status) {
 
 struct ExportArguments {
   std::string recording;
-  std::filesystem::path ros2bag;
+  std::filesystem::path ros2bag, lateness;
   ExportOptions options;
 };
 
@@ -167,14 +170,31 @@ int run_ros2_bag(const ExportArguments& arguments, const Stopped& stopped) {
   return 0;
 }
 
+// The channels of lateness, one table of the whole session.
+int run_lateness(const ExportArguments& arguments) {
+  const report::ResultFiles checked({{"--lateness", arguments.lateness}}, {arguments.recording});
+  const recording::Recording rows =
+      session::lateness_channels(session::read_session(arguments.recording));
+  if (rows.row_count() == 0) {
+    throw ConfigError(arguments.recording, "no step of a rig", "the recording of a session");
+  }
+  const recording::Status status = recording::write_csv(arguments.lateness.string(), rows);
+  if (!status.ok()) throw std::runtime_error(status.text);
+  fmt::print("{}: {} rows of {} channels\n", arguments.lateness.string(), rows.row_count(),
+             rows.columns.size());
+  return 0;
+}
+
 int run_export(const ExportArguments& arguments) {
   runtime::Stop stop;
   ExportOptions options = arguments.options;
   options.stopped = [&stop] { return stop.requested(); };
   if (!arguments.ros2bag.empty()) return run_ros2_bag(arguments, options.stopped);
-  if (options.csv.empty() && options.mat.empty() && options.hdf5.empty()) {
+  const bool tables = !options.csv.empty() || !options.mat.empty() || !options.hdf5.empty();
+  if (!arguments.lateness.empty() && !tables) return run_lateness(arguments);
+  if (!tables) {
     throw ConfigError("export", "no format",
-                      "--csv DIR, --mat FILE, --hdf5 FILE or --ros2bag FILE");
+                      "--csv DIR, --mat FILE, --hdf5 FILE, --ros2bag FILE or --lateness FILE");
   }
   const Exported exported = export_recording(arguments.recording, options);
   fmt::print("{:<40} {:>12} {:>9}\n", "table", "rows", "columns");
@@ -190,7 +210,7 @@ int run_export(const ExportArguments& arguments) {
   for (const std::string& reason : exported.left_out) {
     runtime::remark("left out: " + reason);
   }
-  return 0;
+  return arguments.lateness.empty() ? 0 : run_lateness(arguments);
 }
 
 void add_export(CLI::App& cli, int& status) {
@@ -207,6 +227,9 @@ void add_export(CLI::App& cli, int& status) {
   verb->add_option("--hdf5", arguments->options.hdf5, "HDF5 file, one group for each topic");
   verb->add_option("--ros2bag", arguments->ros2bag,
                    "MCAP file with messages of ROS 2 (sensor_msgs/Imu and so on), of a session");
+  verb->add_option("--lateness", arguments->lateness,
+                   "CSV file with what came late in each tick of a session: age of the answers, "
+                   "lost ticks, ...");
   verb->add_option("--topics", arguments->options.topics,
                    "names or patterns with * and ?, comma-separated [every topic]")
       ->delimiter(',')

@@ -5,11 +5,15 @@ This is ctest's fixture `lab_run`: other tests read this session's recording.
 """
 import json
 import math
+import pathlib
 import shutil
+import tempfile
 import unittest
 
 import lab_process
+from dashboard_test import PAGE, Dashboard
 from lab_process import BUILD, SERVICES, LabProcess, running
+from verb_case import stillhand
 
 SEED = 1
 TRIAL_S = 20
@@ -20,6 +24,8 @@ STREAMS = {f"stillhand/{name}" for name in ("platform_command", "raw_sample", "r
 # lengths of the ramps: the involuntary force goes on over the trials. A millisecond of delay leaves at most
 # 2 pi x 2 Hz x 1 ms = 0.013 of the force. The tolerance holds both.
 CANCELLED_SHARE, CANCELLED_TOLERANCE = 0.70, 0.04
+# Two digits of the page.
+SHOWN_N = 0.01
 # 40 s and 3 x 20 s measured, ramps and lead of each, matching, two fits, the evaluation: 125 s on two cores.
 SESSION_LIMIT_S = 240
 
@@ -119,6 +125,28 @@ class LabSessionTest(unittest.TestCase):
             self.assertEqual(set(causes), {"model", "lateness", "limits", "involuntary", "sensor"})
             self.assertAlmostEqual(sum(causes.values()), left_n, delta=1e-9)
             self.assertGreater(causes["model"], 0.0)
+
+    def test_diagnose_and_the_page_say_the_same_of_lateness(self):
+        want = next(trial for trial in self.summary["trials"] if trial["condition"] == "C")
+        recording = self.lab.out / "session.mcap"
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "out.json"
+            done = stillhand("diagnose", recording, "--trial", "C", "--most-effects", 0, "--json", file)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found, = json.loads(file.read_text())["lateness"]
+        self.assertEqual(found, {"recording": str(recording), "trial": want["number"], **want["lateness"]})
+        self.assertIn(f"leaves {want['lateness']['left']['force_n']:.2f} N", done.stdout)
+        if not PAGE.is_file():
+            self.skipTest("npm installed no page")
+        dashboard = Dashboard("--recording", recording, "--unblinded")
+        self.addCleanup(dashboard.close)
+        cost = dashboard.snapshot()["cost"]
+        self.assertEqual((cost["trial"], cost["length_s"]), (want["number"], TRIAL_S))
+        for part in ("left", "lateness", "limits", "sensor"):
+            at_the_end_n = want["lateness"][part]["force_n"]
+            self.assertAlmostEqual(cost[f"{part}_n"], at_the_end_n, delta=max(0.05 * abs(at_the_end_n), SHOWN_N))
+        self.assertAlmostEqual(sum(cost[f"{part}_n"] for part in ("lateness", "limits", "sensor", "rest")), cost["left_n"],
+                               delta=1e-9)
 
     def test_lost_ticks_are_those_of_the_recording(self):
         recording = self.lab.recording(1)

@@ -138,7 +138,8 @@ void add_search(Page& page, const Evidence& evidence) {
 }  // namespace
 
 Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& recordings,
-                    const std::vector<report::Drawing>& drawings) {
+                    const std::vector<report::Drawing>& drawings,
+                    const std::vector<RecordedSplit>& splits) {
   const Diagnosis& found = evidence.found;
   const std::string& first = recordings.front();
   Page page(
@@ -152,6 +153,7 @@ Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& re
     page.warning(fault.says);
     std::erase(notes, fault.says);
   }
+  add_splits(splits, page);
   page.facts(facts_of(evidence, recordings));
   if (!notes.empty()) page.list(notes);
   add_errors(page, evidence, drawings);
@@ -162,10 +164,11 @@ Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& re
 }
 
 void write_report(const Diagnosis& found, const diagnosis::Measurement& measurement,
-                  const std::vector<std::string>& recordings, report::StagedFolder& folder) {
+                  const std::vector<std::string>& recordings, report::StagedFolder& folder,
+                  const std::vector<RecordedSplit>& splits) {
   const Evidence evidence(found, measurement);
   const auto drawings = report::render(diagnosis_figures(evidence), folder.path());
-  diagnosis_page(evidence, recordings, drawings).write(folder.path() / "report.html");
+  diagnosis_page(evidence, recordings, drawings, splits).write(folder.path() / "report.html");
   std::vector<std::string> names{"report.html"};
   for (const std::string& name : figure_names()) {
     for (std::string& file : report::figure_files(name)) names.push_back(std::move(file));

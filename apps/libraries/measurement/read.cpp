@@ -14,7 +14,9 @@
 #include "apps/libraries/measurement/session.hpp"
 #include "apps/libraries/measurement/tables/apply_mapping.hpp"
 #include "apps/libraries/measurement/tables/bag_table.hpp"
+#include "apps/libraries/session/lateness_channels.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/core/contract/tick.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/system/process/remark.hpp"
 
@@ -127,11 +129,27 @@ diagnosis::Measurement screened(recording::Recording rows, const ReadOptions& op
   return out;
 }
 
+// Where the recording lacks a step of the rig, its channels hold those of the step before.
+void add_lateness(const std::string& path, recording::Recording& rows) {
+  const recording::Recording all = session::lateness_channels(session::read_session(path));
+  if (all.time_s.empty()) return;
+  for (const recording::Column& channel : all.columns) {
+    recording::Column column{channel.name, channel.unit, {}};
+    for (const double time_s : rows.time_s) {
+      const auto behind = std::ranges::upper_bound(all.time_s, time_s + 0.5 * kControlPeriod_s);
+      const auto place = std::max<std::ptrdiff_t>(behind - all.time_s.begin() - 1, 0);
+      column.values.push_back(channel.values[static_cast<std::size_t>(place)]);
+    }
+    rows.columns.push_back(std::move(column));
+  }
+}
+
 diagnosis::Measurement read_session(const std::string& path, const ReadOptions& options) {
   SessionRows session = options.session_trial.empty()
                             ? read_session_rows(path, options.trial)
                             : read_session_rows(path, options.session_trial, true);
   if (!session.loss.empty()) runtime::remark(session.loss);
+  if (options.lateness) add_lateness(path, session.rows);
   return screened(std::move(session.rows), options, session.notes);
 }
 

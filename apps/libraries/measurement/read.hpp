@@ -21,6 +21,8 @@ struct ReadOptions {
   /// Letter of a condition, as `trial`, for files that may also be tables; of several trials with
   /// it the last.  Empty: `trial` alone counts.
   std::string session_trial = {};
+  /// The channels of lateness of a session too (apps/libraries/session/README.md).
+  bool lateness = false;
   /// [-] samples times channels that are read at most; 8 B each, and as much again while reading.
   std::size_t most_values = 60'000'000;
   ModelChannels channels = {};  ///< that the screening judges as the model's

@@ -50,7 +50,8 @@ class TrialFinder {
       return;
     }
     if (control.start_tick() < 0 || control.start_tick() > kMostTicks ||
-        control.duration_ticks() <= 0 || control.duration_ticks() > kMostTicks) {
+        control.duration_ticks() <= 0 || control.duration_ticks() > kMostTicks ||
+        control.ramp_ticks() < 0 || control.ramp_ticks() > kMostTicks) {
       return;
     }
     SessionTrial& trial = by_number_[control.trial()];
@@ -63,6 +64,7 @@ class TrialFinder {
                                                                         : TrialPhase::kTracking;
     trial.trial.start_tick = control.start_tick();
     trial.trial.duration_ticks = control.duration_ticks();
+    trial.trial.ramp_ticks = control.ramp_ticks();
     trial.end_tick = control.start_tick() + control.duration_ticks();
   }
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <map>
-#include <utility>
 
 #include "apps/libraries/session/clock_line.hpp"
 #include "services/core/contract/tick.hpp"
@@ -61,10 +60,14 @@ class Steps {
       now_[kAnswerTime] = seconds(begun_ns, there_ns);
       now_[kOffset] = seconds(there_ns, sent_ns);
     }
-    const Tick age = truth.motor_tick() < 0 ? 0 : truth.tick() - truth.motor_tick();
+    // The rig uses none that is too old: it is then the age of the last that it used.
+    const bool used = truth.motor_tick() >= 0;
+    const bool repeated = used && truth.motor_tick() == used_;
+    if (used) used_ = truth.motor_tick();
+    const Tick age = used_ < 0 ? 0 : truth.tick() - used_;
     now_[kAge] = static_cast<double>(age) * kControlPeriod_s;
     now_[kLost] = answered ? 0.0 : 1.0;
-    now_[kRepeated] = std::exchange(used_, truth.motor_tick()) == truth.motor_tick() ? 1.0 : 0.0;
+    now_[kRepeated] = repeated ? 1.0 : 0.0;
     now_[kLater] = answered && age > 0 ? 1.0 : 0.0;
     now_[kClosed] = truth.motor_permitted() ? 1.0 : 0.0;
     return now_;
@@ -75,7 +78,7 @@ class Steps {
   std::map<Tick, std::int64_t> acquired_ns_;
   std::map<Tick, const stillhand_msgs::MotorCommand*> commands_;
   std::array<double, kChannels.size()> now_{};
-  Tick used_ = -2;
+  Tick used_ = -1;
 };
 
 }  // namespace
