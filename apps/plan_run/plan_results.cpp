@@ -165,9 +165,9 @@ std::string plan_table(const Planned& planned) {
         fmt::format("        {:.0f} % in {:g} s\n", 100.0 * each.probability_settled, each.seconds);
   }
   for (const auto& [i, j] : out_of_reach(planned)) {
-    text +=
-        fmt::format("no motion of this platform separates {} from {} in {:g} s ({} designs tried)\n",
-                    name_at(planned, i), name_at(planned, j), planned.seconds, plan.tried);
+    text += fmt::format(
+        "no motion of this platform separates {} from {} in {:g} s ({} designs tried)\n",
+        name_at(planned, i), name_at(planned, j), planned.seconds, plan.tried);
   }
   for (const std::string& line : planned.advice) text += fmt::format("note: {}\n", line);
   return text;
