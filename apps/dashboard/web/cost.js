@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lateness costs the motor's force, in words. Pure.
-const newtons = (value) => `${value.toFixed(2)} N`;
+const newtons = (value) => `${value.toFixed(2).replace(/^-(?=0\.00$)/, "").replace("-", "−")} N`;
 const LATE = ["late", "lost", "silent"];
 
 // "cost so far: 0.08 N", of a process that keeps the motor waiting; empty where it has cost nothing that two digits show.

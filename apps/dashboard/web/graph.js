@@ -175,16 +175,23 @@ export class Graph {
     return { cancellation: "sensing", rig: "cancellation" }[reader] === writer ? costOf(this.cost, writer) : "";
   }
 
-  // The same as a table.
+  // The same as a table; what costs force comes first behind what is critical, once for each connection.
   list() {
-    const rows = this.faults.map((fault) => {
+    const paid = new Set();
+    const costs = new Map(this.faults.map((fault) => {
+      const cost = paid.has(fault.topic) ? "" : this.costAt(fault);
+      if (cost !== "") paid.add(fault.topic);
+      return [fault, cost];
+    }));
+    const rank = (fault) => (fault.level === "critical" ? 0 : costs.get(fault) !== "" ? 1 : 2);
+    const rows = [...this.faults].sort((one, other) => rank(one) - rank(other)).map((fault) => {
       const row = create("tr");
       if (!fault.active) row.className = "faint";
       const edge = [fault.writer, short(fault.topic), fault.reader].filter((part) => part !== "").join(" → ");
       const head = create("th", edge);
       head.scope = "row";
       const since = fault.since_ms ? clock(fault.since_ms) : fault.kind === "unmatched" ? "" : "before this page opened";
-      row.append(head, create("td", fault.active ? "now" : "was", fault.active ? "l bad" : "l"), create("td", fault.text, "l"), create("td", this.costAt(fault), "l"), create("td", since),
+      row.append(head, create("td", fault.active ? "now" : "was", fault.active ? "l bad" : "l"), create("td", fault.text, "l"), create("td", costs.get(fault), "l"), create("td", since),
         create("td", fault.last_ms ? clock(fault.last_ms) : "–"));
       return row;
     });

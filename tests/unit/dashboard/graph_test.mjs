@@ -102,7 +102,7 @@ test("a process without a life sign for longer than its lease is gone", () => {
   assert.ok(!gone({ service: "rig", state: "running", silent_ms: 299 }));
 });
 
-const COST = { why: "", trial: 3, length_s: 12.6, left_n: 1.24, lateness_n: 0.081, limits_n: 0, sensor_n: 0.001, rest_n: 1.158,
+const COST = { why: "", trial: 3, length_s: 12.6, left_n: 1.24, lateness_n: 0.081, limits_n: -0.02, sensor_n: -0.001, rest_n: 1.158,
   late_n: { sensing: 0.08, cancellation: 0.001, rig: 0, interlock: 0 } };
 
 test("the cost stands at the process that kept the motor waiting, and nowhere else", () => {
@@ -117,7 +117,7 @@ test("the cost stands at the process that kept the motor waiting, and nowhere el
 
 test("the cost in words says how much of what, from whom, or why nothing can be said", () => {
   assert.equal(costInWords(COST).join(""), "Cost of lateness so far: 0.08 N of the 1.24 N that trial 3 leaves after 13 s, from sensing 0.08 N. " +
-    "Not from lateness: 1.16 N from model and body, 0.00 N from limits, 0.00 N from the sensor.");
+    "Not from lateness: 1.16 N from model and body, −0.02 N from limits, 0.00 N from the sensor.");
   assert.match(costInWords({ ...COST, why: "no trial yet" }).join(""), /trial 3 left \(now: no trial yet\)/);
   assert.equal(costInWords({ why: "no trial yet" }).join(""), "Cost of lateness in newtons: no trial yet.");
 });
