@@ -69,7 +69,8 @@ inline constexpr std::string_view kRecorder[]{"recorder"};
 inline constexpr std::string_view kSensedReaders[]{"motion",         "cancellation",   "display",
                                                    "human_operator", "identification", "recorder"};
 inline constexpr std::string_view kRigAndRecorder[]{"rig", "recorder"};
-inline constexpr std::string_view kMotorCommandReaders[]{"rig", "display", "recorder"};
+inline constexpr std::string_view kMotorCommandReaders[]{"rig", "display", "identification",
+                                                         "recorder"};
 inline constexpr std::string_view kSensingAndRecorder[]{"sensing", "recorder"};
 inline constexpr std::string_view kOperatorAndRecorder[]{"human_operator", "recorder"};
 inline constexpr std::string_view kAssignmentReaders[]{"motion", "cancellation", "recorder"};

@@ -6,6 +6,7 @@
 #include "apps/lab/lost_service.hpp"
 #include "services/core/cancellation/part.hpp"
 #include "services/messages/identification/codec.hpp"
+#include "services/system/process/remark.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -23,6 +24,16 @@ Conductor::Watch watch_of(const runtime::Bus& bus, Processes& processes,
   return [&processes, lost = LostService(bus, patience_s, std::string(kSampleClock))]() mutable {
     const auto ended = processes.reap();
     return ended ? ended : lost();
+  };
+}
+
+// The trials of an experiment are blinded to its experimenter, too: that a model fails shows that
+// the motor acts.
+Conductor::Say say_of(const LabOptions& options, report::ProgressLine& progress) {
+  if (!options.trials.empty()) return {};
+  return [&progress](const std::string& line) {
+    progress.finish();
+    runtime::remark(line);
   };
 }
 
@@ -46,7 +57,8 @@ ConductedTrials::ConductedTrials(const LabOptions& options, const AskedMotions& 
       clocks_(service),
       conductor_(
           service, watch_of(service.bus(), processes, options),
-          [this](const Progress& progress) { progress_.show(progress.what, progress.done); }) {
+          [this](const Progress& progress) { progress_.show(progress.what, progress.done); },
+          say_of(options, progress_)) {
   if (options.stop_key.empty()) return;
   stop_key_.emplace(options.stop_key, [this] { conductor_.stop_at_once(); });
 }

@@ -26,6 +26,8 @@ constexpr std::chrono::milliseconds kPollPeriod{50};
 constexpr std::size_t kMostEvents = 100'000;
 // Between two looks of a prompt; the display repeats its answer.
 constexpr std::size_t kMostAnswers = 16;
+// Between two looks; one at a time is what the watch sends.
+constexpr std::size_t kMostModelChanges = 16;
 
 // In the order of the launches, which is that of the data flow.
 Roster roster() {
@@ -44,10 +46,11 @@ Death death_of(const Ended& ended) {
 
 }  // namespace
 
-Conductor::Conductor(runtime::Service& service, Watch watch, Show show)
+Conductor::Conductor(runtime::Service& service, Watch watch, Show show, Say say)
     : service_(service),
       watch_(std::move(watch)),
       show_(std::move(show)),
+      say_(std::move(say)),
       roster_(roster()),
       control_(service.bus().publisher<stillhand_msgs::TrialControl>(topics::kTrialControl)),
       assignment_(
@@ -86,6 +89,9 @@ void Conductor::subscribe() {
           }
           if (event.source == topics::kEndsLast && message.code() == stillhand_msgs::CODE_RECORDED)
             seen_.recorded_tick = std::max(seen_.recorded_tick, event.tick);
+          if (message.code() == stillhand_msgs::CODE_MODEL_CHANGED &&
+              model_changes_.size() < kMostModelChanges)
+            model_changes_.push_back(mark_of(event));
           if (seen_.events.size() < kMostEvents) seen_.events.push_back(std::move(event));
         });
       });
@@ -172,8 +178,21 @@ void Conductor::run_stage(Stage& stage, bool with_peers) {
       actions = stage.step(seen_, runtime::monotonic_ns());
     }
     perform(actions);
+    say_model_changes();
     std::unique_lock lock(mutex_);
     if (!stage.over()) news_.wait_for(lock, kPollPeriod, [this] { return fresh_; });
+  }
+}
+
+void Conductor::say_model_changes() {
+  std::vector<session::Mark> changes;
+  {
+    const std::lock_guard lock(mutex_);
+    changes.swap(model_changes_);
+  }
+  if (!say_ || !planned_) return;
+  for (const session::Mark& change : changes) {
+    say_(session::model_change(change, planned_->trial));
   }
 }
 

@@ -40,8 +40,11 @@ class Conductor {
   using Watch = std::function<std::optional<Ended>()>;
   /// Called about ten times a second while something runs.
   using Show = std::function<void(const Progress&)>;
+  /// Called once with what the person at the terminal should know while the trial runs.
+  using Say = std::function<void(const std::string&)>;
 
-  Conductor(runtime::Service& service, Watch watch, Show show);
+  /// @param say  nothing: a blinded session
+  Conductor(runtime::Service& service, Watch watch, Show show, Say say);
 
   /// Returns once every endpoint of the catalogue has matched.
   /// @throws std::runtime_error naming the processes that are missing after `limit_s` [s];
@@ -90,6 +93,8 @@ class Conductor {
   /// Steps the stage until it is over.
   void run_stage(Stage& stage, bool with_peers = false);
   void look(bool with_peers);
+  /// What the watch on the model has found since the last call.
+  void say_model_changes();
   /// Announces who writes for each process, once.
   void name_sources();
   void repeat_sources();
@@ -101,6 +106,7 @@ class Conductor {
   runtime::Service& service_;
   Watch watch_;
   Show show_;
+  Say say_;
   Roster roster_;
   runtime::Publisher<stillhand_msgs::TrialControl> control_;
   runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;
@@ -121,6 +127,7 @@ class Conductor {
   Seen seen_;
   stillhand_msgs::FeedthroughModel model_;  ///< the newest
   std::string recording_;
+  std::vector<session::Mark> model_changes_;  ///< not yet said
 };
 
 }  // namespace stillhand::lab

@@ -115,6 +115,7 @@ report::Page session_page(const LabOptions& options,
   }
   page.paragraph(meanings + "Another session gives other numbers.");
   for (const std::string& line : disturbance_lines(result)) page.paragraph("* " + line + ".");
+  for (const std::string& line : model_change_lines(outcomes)) page.warning(line + ".");
   add_budgets(result, page);
   if (!mitigated_trials(result).empty()) {
     page.section("Mitigations");

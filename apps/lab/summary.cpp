@@ -36,6 +36,10 @@ void print_disturbances(const session::SessionResult& result) {
   for (const std::string& line : disturbance_lines(result)) std::printf("%s\n", line.c_str());
 }
 
+void print_model_changes(const std::vector<session::TrialOutcome>& outcomes) {
+  for (const std::string& line : model_change_lines(outcomes)) std::printf("%s\n", line.c_str());
+}
+
 void print_budgets(const session::SessionResult& result) {
   for (const session::TrialResult& trial : result.trials) {
     if (!trial.budget) continue;
@@ -152,6 +156,7 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   draw(options, outcomes, result);
   print_tables(result);
   print_disturbances(result);
+  print_model_changes(outcomes);
   print_budgets(result);
   print_rig(options);
   print_models(result, options.model);

@@ -269,6 +269,18 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
   return lines;
 }
 
+std::vector<std::string> model_change_lines(const std::vector<session::TrialOutcome>& outcomes) {
+  std::vector<std::string> lines;
+  for (const session::TrialOutcome& outcome : outcomes) {
+    for (const session::Mark& mark : outcome.marks) {
+      std::string line = session::model_change(mark, outcome.planned.trial);
+      if (line.empty()) continue;
+      lines.push_back(session::in_words(outcome.planned.label) + ": " + std::move(line));
+    }
+  }
+  return lines;
+}
+
 std::vector<std::string> uncounted_lines(const std::vector<session::TrialOutcome>& outcomes) {
   std::vector<std::string> lines;
   for (const session::TrialOutcome& outcome : outcomes) {

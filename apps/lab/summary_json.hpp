@@ -32,6 +32,8 @@ std::vector<const session::TrialResult*> mitigated_trials(const session::Session
 /// "C disturbed at 11.5 s: sensing was late by 73 ms, force 0 for 0.12 s": the longest five, one of
 /// each trial among them, and how to see all.
 std::vector<std::string> disturbance_lines(const session::SessionResult& result);
+/// "C: the model no longer holds since 63 s of trial 3, by 30 % of the predicted force; ...".
+std::vector<std::string> model_change_lines(const std::vector<session::TrialOutcome>& outcomes);
 /// "trial 3, C, does not count: rig: interlock opened".
 std::vector<std::string> uncounted_lines(const std::vector<session::TrialOutcome>& outcomes);
 

@@ -202,6 +202,8 @@ void MessageFeed::look_into(const Known& known, const Message& message) {
 }
 
 void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at_ns) {
+  // Only a model that is used can fail: the motor acts.
+  if (event.code() == stillhand_msgs::CODE_MODEL_CHANGED && forces_hidden(at_ns)) return;
   events_.push_front({at_ns, event});
   if (events_.size() > kMostEvents) events_.pop_back();
   if (event.kind() == stillhand_msgs::EVENT_FORCE_ZERO && options_.blinded) hide_delay();

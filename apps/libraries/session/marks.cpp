@@ -8,6 +8,8 @@
 namespace stillhand::session {
 namespace {
 
+constexpr const char* kModelChanged = "model no longer holds";
+
 const char* name_of(stillhand_msgs::EventKind kind) {
   switch (kind) {
     case stillhand_msgs::EVENT_DEADLINE_MISSED:
@@ -45,7 +47,19 @@ const char* name_of(stillhand_msgs::EventKind kind) {
 }
 
 bool same(const Mark& a, const Mark& b) {
-  return a.what == b.what && a.source == b.source && a.topic == b.topic && a.peer == b.peer;
+  return a.what == b.what && a.what != kModelChanged && a.source == b.source &&
+         a.topic == b.topic && a.peer == b.peer;
+}
+
+const char* what_of(const stillhand_msgs::Event& event) {
+  switch (event.code()) {
+    case stillhand_msgs::CODE_STALL:
+      return "stood still";
+    case stillhand_msgs::CODE_MODEL_CHANGED:
+      return kModelChanged;
+    default:
+      return name_of(event.kind());
+  }
 }
 
 }  // namespace
@@ -58,8 +72,20 @@ std::string line_of(const Mark& mark) {
   return line;
 }
 
+std::string model_change(const Mark& mark, const Trial& trial) {
+  if (mark.what != kModelChanged) return {};
+  const double noticed_s =
+      kControlPeriod_s * static_cast<double>(mark.first_tick - trial.start_tick);
+  const double since_s = noticed_s - mark.worst_us / 1e6;
+  const std::string when = since_s >= 0.0
+                               ? fmt::format("since {:.0f} s of trial {}", since_s, trial.number)
+                               : fmt::format("since before trial {}", trial.number);
+  return fmt::format("the model no longer holds {}, {}; noticed at {:.0f} s", when, mark.text,
+                     noticed_s);
+}
+
 Mark mark_of(const stillhand_msgs::Event& event) {
-  return {event.code() == stillhand_msgs::CODE_STALL ? "stood still" : name_of(event.kind()),
+  return {what_of(event),
           event.source().c_str(),
           event.topic().c_str(),
           event.peer().c_str(),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "idl/session.h"
+#include "services/core/contract/trial.hpp"
 
 namespace stillhand::session {
 
@@ -24,6 +25,9 @@ struct Mark {
 Mark mark_of(const stillhand_msgs::Event& event);
 /// One line for a person.
 std::string line_of(const Mark& mark);
+/// Of a mark that says that the canceller's model no longer holds: since when, as one clause; empty
+/// of every other mark.
+std::string model_change(const Mark& mark, const Trial& trial);
 /// Adds a mark, or counts it with the one that is the same.
 void add_mark(std::vector<Mark>& marks, const Mark& mark);
 

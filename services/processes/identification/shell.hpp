@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -10,13 +11,15 @@
 #include "idl/control_loop.h"
 #include "idl/model.h"
 #include "services/bus/service.hpp"
+#include "services/core/cancellation/model_watch.hpp"
 #include "services/core/identification/identifier.hpp"
 #include "services/core/identification/pegged_record.hpp"
 
 namespace stillhand::identification {
 
 /// The identification's process: a model from each pegged trial, and one of the feedthrough to
-/// position from each trial with the stick free, fitted in a thread of its own.
+/// position from each trial with the stick free, fitted in a thread of its own.  While the motor
+/// cancels it watches whether the model holds.
 class Shell {
  public:
   explicit Shell(runtime::Service& service);
@@ -24,6 +27,7 @@ class Shell {
 
  private:
   void on_sensed(const stillhand_msgs::Sensed& sensed);
+  void on_command(const stillhand_msgs::MotorCommand& command);
   void fit_trials(const std::stop_token& stop);
   stillhand_msgs::FeedthroughModel fit(const PeggedTrial& trial, TrialPhase phase);
 
@@ -33,6 +37,13 @@ class Shell {
   TrialPhase phase_ = TrialPhase::kPegged;  ///< of the newest trial to be fitted
   std::int32_t models_ = 0;
   std::atomic<Tick> newest_tick_{0};
+  /// Of the newest samples, at tick % size: a command answers one of them.
+  struct Angle {
+    Tick tick = -1;
+    double theta_rad = 0.0;
+  };
+  std::array<Angle, 64> angles_{};
+  std::optional<cancellation::ModelWatch> watch_;  ///< receiving thread only
   runtime::Publisher<stillhand_msgs::FeedthroughModel> model_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
