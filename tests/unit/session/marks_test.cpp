@@ -84,5 +84,21 @@ TEST(MarkTest, ALineHasOnlyThePartsThatThereAre) {
   EXPECT_EQ(line_of(mark), "rig: deadline missed on stillhand/sensed of motion (7 ms)");
 }
 
+TEST(MarkTest, AModelThatNoLongerHoldsSaysSinceWhen) {
+  stillhand_msgs::Event event;
+  event.kind(stillhand_msgs::EVENT_NOTE);
+  event.code(stillhand_msgs::CODE_MODEL_CHANGED);
+  event.source("identification");
+  event.tick(127'000);
+  event.by_us(28e6);
+  event.text("by 26 % of the predicted force");
+  const Trial trial{.number = 1, .phase = TrialPhase::kTracking, .start_tick = 23'000};
+  EXPECT_EQ(model_change(mark_of(event), trial),
+            "the model no longer holds since 76 s of trial 1, by 26 % of the predicted force; "
+            "noticed at 104 s");
+  event.code(stillhand_msgs::CODE_NONE);
+  EXPECT_EQ(model_change(mark_of(event), trial), "");
+}
+
 }  // namespace
 }  // namespace stillhand::session
