@@ -11,7 +11,6 @@
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/measurement/screening_json.hpp"
 #include "apps/libraries/report/or_null.hpp"
-#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::diagnose {
@@ -142,6 +141,22 @@ ordered_json body_json(const diagnosis::Model& model) {
           {"rate_hz", model.rate_hz}};
 }
 
+ordered_json limits_json(const Diagnosis& diagnosis) {
+  ordered_json json = ordered_json::object();
+  for (const diagnosis::PlantedLimit& limit : diagnosis.limits) {
+    ordered_json found = ordered_json::array();
+    for (std::size_t i = 0; i < limit.found.size(); ++i) {
+      found.push_back({{"rms", diagnosis::kPlantedSizes[i] * diagnosis.final_error.rmse},
+                       {"share", limit.found[i]}});
+    }
+    json[limit.kind] = {{"channel", or_null(limit.channel)},
+                        {"found", found},
+                        {"half", or_null(limit.half)},
+                        {"beyond_linear", limit.beyond_linear}};
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& diagnosis) {
@@ -160,10 +175,6 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const diagnosis::NoiseEstimate& each : diagnosis.noise_floor.estimates) {
     estimates[each.name] = each.rmse;
   }
-  ordered_json limits = ordered_json::object();
-  for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
-    if (!kind->any_shape()) limits[std::string(kind->name())] = diagnosis.detection_limit_of(*kind);
-  }
   ordered_json stability;
   if (diagnosis.stability) {
     for (const auto& [verdict, count] : diagnosis.stability->counts) {
@@ -181,8 +192,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                             {"high", diagnosis.noise_floor.high},
                             {"method", diagnosis.noise_floor.method},
                             {"estimates", estimates}}},
-                          {"detection_limit", diagnosis.detection_limit},
-                          {"detection_limits", limits},
+                          {"detection_limit", or_null(diagnosis.detection_limit)},
+                          {"detection_limits", limits_json(diagnosis)},
                           {"verdict", diagnosis.verdict()},
                           {"stability", stability},
                           {"no_model", no_model_json(diagnosis)},

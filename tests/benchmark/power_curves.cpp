@@ -70,6 +70,12 @@ bool channel_is_right(const planted::PlantedEffect& effect, const diagnosis::Fou
   return in_time || effect.channels.empty() || holds(effect.channels) || holds(effect.also);
 }
 
+// As far as the linear model cannot imitate it.
+double half_of(const diagnosis::Diagnosis& verdict, const std::string& kind) {
+  const auto limit = std::ranges::find(verdict.limits, kind, &diagnosis::PlantedLimit::kind);
+  return limit == verdict.limits.end() ? 0.0 : limit->half * limit->beyond_linear;
+}
+
 std::string row_of(const Case& each) {
   const planted::Draft draft = planted::draw(each.seed, each.spec);
   const planted::Truth& truth = draft.truth;
@@ -87,11 +93,12 @@ std::string row_of(const Case& each) {
       none ? verdict.effects.empty()
            : found == kind && channel_is_right(truth.effects.front(), verdict.effects.front());
   char row[512];
-  std::snprintf(row, sizeof row, "%llu,%s,%s,%.5g,%.5g,%.5g,%s,%d,%.5g,%.3f\n",
+  std::snprintf(row, sizeof row, "%llu,%s,%s,%.5g,%.5g,%.5g,%s,%d,%.5g,%.5g,%.3f\n",
                 static_cast<unsigned long long>(each.seed), each.noise.c_str(), kind.c_str(),
                 truth.strength, truth.noise_rms_n / truth.force_rms_n,
                 std::sqrt(truth.evidence / samples), found.c_str(), right ? 1 : 0,
-                verdict.detection_limit / truth.noise_rms_n, took.count());
+                verdict.detection_limit / truth.noise_rms_n,
+                half_of(verdict, kind) / truth.noise_rms_n, took.count());
   return row;
 }
 
@@ -130,7 +137,7 @@ int main(int argc, char** argv) try {
   }
   std::fputs(
       "seed,noise,kind,strength,noise_over_force,size_over_noise,found,right,limit_over_noise,"
-      "seconds\n",
+      "half_over_noise,seconds\n",
       file);
   write_all(cases_of(count, none, seed), file);
   std::fclose(file);

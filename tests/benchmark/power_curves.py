@@ -33,7 +33,7 @@ def rows_of(path):
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:
-        for name in ("strength", "noise_over_force", "size_over_noise", "limit_over_noise", "seconds"):
+        for name in ("strength", "noise_over_force", "size_over_noise", "limit_over_noise", "half_over_noise", "seconds"):
             row[name] = float(row[name])
         row["found"] = row["found"].split("+") if row["found"] else []
         row["right"] = row["right"] == "1"
@@ -115,6 +115,17 @@ def print_sizes(rows, found, right):
               f"{ratio:.2f} | {numpy.median(limits) if limits else float('nan'):.3f} |")
 
 
+def print_limits(rows):
+    """How often an effect is found that is smaller or larger than the kind's own planted limit says."""
+    print("\n| size over what the verdict quotes for its kind | found |\n| --- | --- |")
+    edges = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0, math.inf)
+    for low, high in zip(edges, edges[1:]):
+        own = [row for row in rows if row["half_over_noise"] > 0.0
+               and low <= row["size_over_noise"] / row["half_over_noise"] < high]
+        if own:
+            print(f"| {low:g} to {high:g} | {share(sum(bool(row['found']) for row in own), len(own))} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=8, help="recordings of each kind under each noise")
@@ -141,6 +152,7 @@ def main():
     if planted:
         found, right = Curves(planted, lambda row: bool(row["found"])), Curves(planted, lambda row: row["right"])
         print_sizes(planted, found, right)
+        print_limits(planted)
     return 0
 
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "services/core/diagnosis/detection/detection_limit.hpp"
+#include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 

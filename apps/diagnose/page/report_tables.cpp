@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "apps/diagnose/page/effect_numbers.hpp"
@@ -240,18 +239,29 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
 Table limit_table(const Diagnosis& found) {
   Table table;
   table.caption =
-      "What would not have been seen. An effect of this size is found in half of all recordings; a "
-      "smaller one may be there. Size: the RMS that the effect adds to the output all the time, "
-      "and that the linear part cannot reproduce.";
-  table.header = {"size found in half of all recordings", "kinds"};
-  table.align = {Align::kLeft, Align::kLeft};
-  std::map<double, std::vector<std::string>> kinds;
-  for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
-    if (kind->any_shape()) continue;
-    kinds[found.detection_limit_of(*kind)].push_back(spaced(kind->name()));
+      "What would not have been seen. Each kind was planted into what the model leaves, "
+      "moved in time against the inputs, and the rule of the search was asked: the share of these "
+      "residuals in which it was found, by the RMS that the effect adds to the output. Half: the "
+      "size that is found in half of them; new to the model: the part of it that the model without "
+      "the effect cannot imitate. Of several channels the one that is hardest to find.";
+  table.header = {"kind"};
+  table.align = {Align::kLeft};
+  for (const double size : diagnosis::kPlantedSizes) {
+    table.header.push_back("found at " + shown(size * found.final_error.rmse, found.output_unit));
+    table.align.push_back(Align::kRight);
   }
-  for (const auto& [limit, names] : kinds) {
-    table.rows.push_back({Cell(shown(limit, found.output_unit), Emphasis::kStrong), listed(names)});
+  table.header.insert(table.header.end(), {"half", "new to the model"});
+  table.align.insert(table.align.end(), {Align::kRight, Align::kRight});
+  for (const diagnosis::PlantedLimit& limit : found.limits) {
+    std::vector<Cell> row{spaced(limit.kind) +
+                          (limit.channel.empty() ? "" : " (" + limit.channel + ")")};
+    for (const double share : limit.found) {
+      row.emplace_back(percent(share, 0), share < 0.5 ? Emphasis::kFaint : Emphasis::kStrong);
+    }
+    row.emplace_back(std::isfinite(limit.half) ? shown(limit.half, found.output_unit) : "never",
+                     Emphasis::kStrong);
+    row.emplace_back(percent(limit.beyond_linear, 0));
+    table.rows.push_back(row);
   }
   return table;
 }

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "apps/libraries/report/text.hpp"
-#include "services/core/diagnosis/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -55,9 +54,14 @@ std::string error_in_words(const Diagnosis& diagnosis) {
          interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ").";
 }
 
-const diagnosis::EffectKind& hardest_to_find() {
-  return **std::ranges::max_element(diagnosis::effect_kinds(), {},
-                                    [](const auto* kind) { return kind->size_found(); });
+// The largest size at which a kind is missed as often as found, and which.
+std::string hardest_to_find(const Diagnosis& diagnosis) {
+  if (diagnosis.limits.empty()) return "";
+  const diagnosis::PlantedLimit& hardest =
+      *std::ranges::max_element(diagnosis.limits, {}, &diagnosis::PlantedLimit::half);
+  if (!std::isfinite(hardest.half)) return " (a " + spaced(hardest.kind) + " hardly ever)";
+  return " (a " + spaced(hardest.kind) + " only if it adds " +
+         shown(hardest.half, diagnosis.output_unit) + " in all)";
 }
 
 }  // namespace
@@ -188,10 +192,8 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   return "Nothing missing: no effect reduces the error of " + model +
          " by more than chance does. An effect that adds " +
          shown(diagnosis.detection_limit, diagnosis.output_unit) +
-         " RMS that a linear model cannot imitate is found in half of all recordings (" +
-         spaced(hardest_to_find().name()) + " only from " +
-         shown(diagnosis.detection_limit_of(hardest_to_find()), diagnosis.output_unit) +
-         "); a smaller one may be there. What is left is " + left +
+         " RMS that a linear model cannot imitate is found as often as not" +
+         hardest_to_find(diagnosis) + "; a smaller one may be there. What is left is " + left +
          ". It depends on none of the quantities that were tested.";
 }
 

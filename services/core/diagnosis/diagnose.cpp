@@ -62,10 +62,6 @@ std::string Diagnosis::verdict() const {
   return unexplained ? "unexplained residual" : "nothing missing";
 }
 
-double Diagnosis::detection_limit_of(const EffectKind& kind) const {
-  return detection_limit * kind.size_found();
-}
-
 Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& options) {
   const auto step = [&options](const std::string& name) {
     if (!options.progress(name)) throw Interrupted();

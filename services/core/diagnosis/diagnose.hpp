@@ -11,6 +11,7 @@
 #include "services/core/diagnosis/carried.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
 #include "services/core/diagnosis/detection/noise_floor.hpp"
+#include "services/core/diagnosis/detection/planted_limits.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/size.hpp"
 #include "services/core/diagnosis/no_model.hpp"
@@ -99,7 +100,8 @@ struct Diagnosis {
   std::optional<Unexplained> unexplained;
   std::optional<NoModel> no_model;     ///< the inputs don't explain the output
   std::vector<SampleFault> screening;  ///< of the recording
-  double detection_limit = 0.0;        ///< [unit of the output] of a further effect, Eq. DG-62
+  std::vector<PlantedLimit> limits;    ///< of a further effect, by kind, Eq. DG-62
+  double detection_limit = 0.0;        ///< [unit of the output] their median
   Model model;                         ///< baseline and effects, fitted together to all samples
   CarriedModel carried;                ///< what predicts other recordings
   HeldOutError carried_error;          ///< of `carried`, judged as final_error
@@ -111,9 +113,6 @@ struct Diagnosis {
   /// "no model", or "effects found" if one of them counts.
   [[nodiscard]] std::string verdict() const;
   [[nodiscard]] bool has_effect_that_counts() const;
-  /// [unit of the output] the size from which a further effect of that kind is found as often as
-  /// not.
-  [[nodiscard]] double detection_limit_of(const EffectKind& kind) const;
 };
 
 /// The residual engine, README: fits the baseline, finds the effects that it lacks, adds them, and

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <numeric>
 
-#include "services/core/diagnosis/detection/detection_limit.hpp"
 #include "services/core/diagnosis/effect_sizes.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/no_model.hpp"
@@ -259,42 +258,24 @@ void add_sizes(Diagnosis& diagnosis, const Signals& signals) {
   }
 }
 
-// RMS behind the noise model over RMS before it, of what the model predicts about its mean: an
-// effect is taken to lie in the band of the response.
-double response_gain(const FreeRun& run, const Signals& whitened) {
-  Eigen::MatrixXd response =
-      Eigen::Map<const Eigen::VectorXd>(run.prediction.data(), std::ssize(run.prediction));
-  const Eigen::Map<const Eigen::VectorXd> weight(run.weight.data(), std::ssize(run.weight));
-  response.array() -= response.col(0).dot(weight) / std::max(weight.sum(), 1.0);
-  response.array() *= weight.array();
-  const double before = response.norm();
-  whitened.whiten(response, run.weight);
-  return before > 0.0 ? response.norm() / before : 1.0;
-}
-
 // Of the last round.
 std::size_t last_candidates(const SearchResult& search) {
   if (!search.last_tried.empty() || search.additions.empty()) return search.last_tried.size();
   return search.additions.back().tried.size();
 }
 
-double limit_of(const Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks) {
+void add_limits(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks) {
+  const SearchOptions& options = diagnosis.options.search;
   FreeRun run;
-  Eigen::VectorXd residual = residual_of(diagnosis.model, signals, run);
-  double gain = 1.0;
+  const Eigen::VectorXd residual = residual_of(diagnosis.model, signals, run);
   const Signals whitened =
       signals.whitened(run.finite ? whitening_taps(residual, signals) : std::vector<double>());
-  if (whitened.is_whitened()) {
-    gain = response_gain(run, whitened);
-    residual = residual_of(diagnosis.model, whitened, run);
-  }
-  return detection_limit(
-             {.rmse = diagnosis.final_error.rmse,
-              .independent = sum_of(run.weight) / correlation_samples(residual, signals.rate_hz()),
-              .blocks = blocks.count,
-              .candidates = last_candidates(diagnosis.search)},
-             diagnosis.options.search) /
-         gain;
+  diagnosis.limits =
+      planted_limits(diagnosis.model, signals, whitened, blocks,
+                     {last_candidates(diagnosis.search),
+                      diagnosis.effects.empty() ? options.first_least_fall : options.least_fall},
+                     options, diagnosis.options.for_each);
+  diagnosis.detection_limit = typical_limit(diagnosis.limits);
 }
 
 void note_derived(Diagnosis& diagnosis, const Signals& signals) {
@@ -347,7 +328,7 @@ void look_at_the_rest(Diagnosis& diagnosis, const Signals& signals, const Blocks
   if (!is_rounding(diagnosis.final_error.rmse, signals)) {
     diagnosis.unexplained = unexplained_of(diagnosis.after, screening);
   }
-  diagnosis.detection_limit = limit_of(diagnosis, signals, blocks);
+  add_limits(diagnosis, signals, blocks);
   diagnosis.noise_floor = noise_floor_of(diagnosis.after, screening,
                                          {diagnosis.final_error.low, diagnosis.final_error.high,
                                           diagnosis.baseline.impulse_response_rmse});

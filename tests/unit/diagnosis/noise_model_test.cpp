@@ -82,6 +82,17 @@ TEST(NoiseModelTest, NothingPassesFromOneStretchToTheNextOrFromASampleWithoutWei
   EXPECT_EQ(x[199], 1.0);
 }
 
+TEST(NoiseModelTest, ASampleOfSlowNoiseHoldsLessThanAnIndependentOne) {
+  constexpr std::size_t kCount = 40000;
+  const std::vector<double> e = white(kCount, 1);
+  const Eigen::Map<const Eigen::VectorXd> independent(e.data(), kCount);
+  EXPECT_EQ(correlation_samples(independent, 100.0), 1.0);
+  // r(n) = 0.9 r(n-1) + e(n): 1 + 2 x 0.9/(1 - 0.9) = 19, without what is below 0.05: 18.
+  Eigen::VectorXd slow = independent;
+  for (Eigen::Index n = 1; n < slow.size(); ++n) slow[n] += 0.9 * slow[n - 1];
+  EXPECT_NEAR(correlation_samples(slow, 100.0), 18.0, 2.0);
+}
+
 // A friction of 15 % of the force under slow noise of 16 % of it, in a minute.
 TEST(NoiseModelTest, AnEffectUnderSlowNoiseIsFoundBehindTheFilter) {
   planted::Spec spec;

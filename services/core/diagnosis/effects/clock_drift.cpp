@@ -17,7 +17,6 @@ constexpr double kTried_s[] = {-0.24, -0.12, -0.06, -0.03, 0.0, 0.03, 0.06, 0.12
 class ClockDrift final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "clock_drift"; }
-  [[nodiscard]] double size_found() const override { return 2.0; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kInputTime; }
   [[nodiscard]] bool time_only(const Effect& /*effect*/) const override { return true; }
   [[nodiscard]] double input_delay_s(const Effect& effect, double time_s) const override {

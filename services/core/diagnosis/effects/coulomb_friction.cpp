@@ -32,7 +32,6 @@ std::vector<double> signs(const std::vector<double>& v, const std::vector<Stretc
 class CoulombFriction final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "coulomb_friction"; }
-  [[nodiscard]] double size_found() const override { return 1.5; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kTerm; }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {

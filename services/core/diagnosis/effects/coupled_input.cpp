@@ -51,7 +51,6 @@ bool lagged(const Effect& effect) { return effect.form == "lagged"; }
 class CoupledInput final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "coupled_input"; }
-  [[nodiscard]] double size_found() const override { return 1.5; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kTerm; }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {

@@ -25,7 +25,6 @@ Nonlinearity element_of(const Effect& effect, double threshold) {
 class Hysteresis final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "hysteresis"; }
-  [[nodiscard]] double size_found() const override { return 1.5; }
   [[nodiscard]] Stage stage(const Effect& effect) const override {
     return effect.channels.empty() ? Stage::kFeedback : Stage::kTerm;
   }

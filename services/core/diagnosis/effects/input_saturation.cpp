@@ -23,7 +23,6 @@ double limited(double u, double limit, bool softly) {
 class InputSaturation final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "input_saturation"; }
-  [[nodiscard]] double size_found() const override { return 2.0; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kInputValue; }
   [[nodiscard]] double mapped(const Effect& effect, double u) const override {
     return limited(u, effect.value(0), soft(effect));

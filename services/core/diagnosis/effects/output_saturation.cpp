@@ -21,7 +21,6 @@ double lower(const Effect& effect) {
 class OutputSaturation final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "output_saturation"; }
-  [[nodiscard]] double size_found() const override { return 2.0; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kOutputValue; }
   [[nodiscard]] double mapped(const Effect& effect, double y) const override {
     if (!soft(effect)) return std::clamp(y, lower(effect), upper(effect));

@@ -21,7 +21,6 @@ int harmonics_of(const Effect& effect) { return effect.form == "two harmonics" ?
 class PositionRipple final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "position_ripple"; }
-  [[nodiscard]] double size_found() const override { return 2.0; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kTerm; }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {

@@ -66,7 +66,6 @@ Swing swing_of(const Effect& effect) {
 class TimeVaryingGain final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "time_varying_gain"; }
-  [[nodiscard]] double size_found() const override { return 1.5; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kGain; }
   // predict() takes it at its mean, 1.
   [[nodiscard]] bool time_only(const Effect& /*effect*/) const override { return true; }

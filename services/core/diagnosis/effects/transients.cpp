@@ -48,7 +48,6 @@ std::vector<double> window_squares(const Eigen::VectorXd& residual,
 class Transients final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "transients"; }
-  [[nodiscard]] double size_found() const override { return 6.0; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kWeight; }
   [[nodiscard]] bool time_only(const Effect& /*effect*/) const override { return true; }
   // Parameters: begin and end of every burst.

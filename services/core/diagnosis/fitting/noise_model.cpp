@@ -91,4 +91,20 @@ std::vector<double> noise_taps(const Eigen::VectorXd& residual, const Signals& s
   return scaled(noise_model(residual, signals));
 }
 
+double correlation_samples(const Eigen::VectorXd& residual, double rate_hz) {
+  constexpr double kLongestCorrelation_s = 10.0;
+  constexpr double kUncorrelated = 0.05;  // a correlation below it ends the sum
+  const double power = std::max(residual.squaredNorm(), 1e-300);
+  const Eigen::Index count = residual.size();
+  const auto longest =
+      std::min(count / 4, static_cast<Eigen::Index>(kLongestCorrelation_s * rate_hz));
+  double sum = 1.0;
+  for (Eigen::Index lag = 1; lag <= longest; ++lag) {
+    const double rho = residual.head(count - lag).dot(residual.tail(count - lag)) / power;
+    if (rho < kUncorrelated) break;
+    sum += 2.0 * rho;
+  }
+  return sum;
+}
+
 }  // namespace stillhand::diagnosis

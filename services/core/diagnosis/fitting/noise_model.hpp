@@ -22,4 +22,9 @@ std::vector<double> whitening_taps(const Eigen::VectorXd& residual, const Signal
 /// is slow feels a colour that hardly helps to predict one step, Eq. DG-70.
 std::vector<double> noise_taps(const Eigen::VectorXd& residual, const Signals& signals);
 
+/// 1 + 2 sum rho_k up to the first correlation below 0.05, at most 10 s and a quarter of the
+/// record: the number of samples that hold as much information as one independent sample.
+/// @param residual  [unit of the output], one value a sample
+double correlation_samples(const Eigen::VectorXd& residual, double rate_hz);
+
 }  // namespace stillhand::diagnosis

@@ -66,9 +66,6 @@ class EffectKind {
   /// kTerm, a linear path: its response from what drives it, [output unit per that unit].
   [[nodiscard]] virtual std::optional<std::complex<double>> path(const SizeCase& at,
                                                                  double frequency_hz) const;
-  /// [-] times Eq. DG-62: the size at which it is found as often as not, measured (RESULTS,
-  /// "Power"): 1, 1.5, 2 or 6.
-  [[nodiscard]] virtual double size_found() const { return 1.0; }
 
   /// What a canceller does about it when it is found in the hand's response; by default what the
   /// stage allows.
