@@ -56,12 +56,18 @@ std::string error_in_words(const Diagnosis& diagnosis) {
 
 // The largest size at which a kind is missed as often as found, and which.
 std::string hardest_to_find(const Diagnosis& diagnosis) {
-  if (diagnosis.limits.empty()) return "";
   const diagnosis::PlantedLimit& hardest =
       *std::ranges::max_element(diagnosis.limits, {}, &diagnosis::PlantedLimit::half);
   if (!std::isfinite(hardest.half)) return " (a " + spaced(hardest.kind) + " hardly ever)";
   return " (a " + spaced(hardest.kind) + " only if it adds " +
          shown(hardest.half, diagnosis.output_unit) + " in all)";
+}
+
+std::string limit_in_words(const Diagnosis& diagnosis) {
+  if (diagnosis.detection_limit <= 0.0) return "No effect that was planted into it is found either.";
+  return "An effect that adds " + shown(diagnosis.detection_limit, diagnosis.output_unit) +
+         " RMS that a linear model cannot imitate is found as often as not" +
+         hardest_to_find(diagnosis) + "; a smaller one may be there.";
 }
 
 }  // namespace
@@ -190,10 +196,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
     return "Nothing missing that counts. " + too_small + " " + error_in_words(diagnosis);
   }
   return "Nothing missing: no effect reduces the error of " + model +
-         " by more than chance does. An effect that adds " +
-         shown(diagnosis.detection_limit, diagnosis.output_unit) +
-         " RMS that a linear model cannot imitate is found as often as not" +
-         hardest_to_find(diagnosis) + "; a smaller one may be there. What is left is " + left +
+         " by more than chance does. " + limit_in_words(diagnosis) + " What is left is " + left +
          ". It depends on none of the quantities that were tested.";
 }
 

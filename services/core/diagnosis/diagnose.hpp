@@ -101,7 +101,7 @@ struct Diagnosis {
   std::optional<NoModel> no_model;     ///< the inputs don't explain the output
   std::vector<SampleFault> screening;  ///< of the recording
   std::vector<PlantedLimit> limits;    ///< of a further effect, by kind, Eq. DG-62
-  double detection_limit = 0.0;        ///< [unit of the output] their median
+  double detection_limit = 0.0;        ///< [unit of the output] their typical one, or 0
   Model model;                         ///< baseline and effects, fitted together to all samples
   CarriedModel carried;                ///< what predicts other recordings
   HeldOutError carried_error;          ///< of `carried`, judged as final_error

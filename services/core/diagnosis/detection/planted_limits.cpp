@@ -123,7 +123,7 @@ std::vector<PlantedLimit> planted_limits(const Model& model, const Signals& sign
 double typical_limit(const std::vector<PlantedLimit>& limits) {
   std::vector<double> sizes;
   for (const PlantedLimit& each : limits) {
-    sizes.push_back(std::isfinite(each.half) ? each.half * each.beyond_linear : each.half);
+    if (std::isfinite(each.half)) sizes.push_back(each.half * each.beyond_linear);
   }
   if (sizes.empty()) return 0.0;
   std::ranges::sort(sizes);

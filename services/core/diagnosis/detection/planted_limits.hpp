@@ -43,8 +43,8 @@ std::vector<PlantedLimit> planted_limits(const Model& model, const Signals& sign
                                          const LastRound& round, const SearchOptions& options,
                                          const ForEach& for_each);
 
-/// [unit of the output] the median over the kinds of what is found in half of the residuals, as
-/// far as the model cannot imitate it.
+/// [unit of the output] the median, over the kinds that are found at all, of what is found in half
+/// of the residuals, as far as the model cannot imitate it; 0: none is.
 double typical_limit(const std::vector<PlantedLimit>& limits);
 
 }  // namespace stillhand::diagnosis
