@@ -23,13 +23,14 @@ def tones(seed):
 def tied_recording(file):
     """a_z follows a_x, so a force of either is one of the other."""
     motion, sideways, noise = tones(1), tones(2), random.Random(3)
-    # The channels of a session's pegged trial.
-    lines, force = ["t [s],a_x [m/s^2],a_y [m/s^2],a_z [m/s^2],roll [rad],theta [rad],f [N],f_motor [N]"], 0.0
+    # The channels of a session's pegged trial; of the stick, which stands still, some sessions leave out one or the other.
+    lines = ["t [s],a_x [m/s^2],a_y [m/s^2],a_z [m/s^2],roll [rad],theta [rad],omega [rad/s],f [N],f_motor [N]"]
+    force = 0.0
     for n in range(40 * RATE_HZ):
         t = n / RATE_HZ
         a_x, a_y = 0.4 * sideways(t), 0.5 * motion(t)
         force += (2.0 * a_y - force) / (0.05 * RATE_HZ)  # a lag of 0.05 s
-        lines.append(f"{t:.3f},{a_x:.6f},{a_y:.6f},{0.3 * a_x:.8f},0,0,{force + a_x + noise.gauss(0.0, 0.05):.6f},0")
+        lines.append(f"{t:.3f},{a_x:.6f},{a_y:.6f},{0.3 * a_x:.8f},0,0,0,{force + a_x + noise.gauss(0.0, 0.05):.6f},0")
     file.write_text("\n".join(lines) + "\n")
 
 
