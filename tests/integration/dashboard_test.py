@@ -7,6 +7,7 @@ import http.client
 import json
 import os
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -14,7 +15,7 @@ import tempfile
 import time
 
 import lab_process
-from lab_process import BUILD, SERVICES, STILLHAND, LabTestCase, next_domain, quick_session
+from lab_process import BUILD, SERVICES, SOURCE, STILLHAND, LabTestCase, next_domain, quick_session
 
 PAGE = BUILD / "share" / "stillhand" / "dashboard" / "uPlot.esm.js"
 LIMIT_S = 20.0
@@ -267,7 +268,7 @@ class RequestsTest(DashboardCase):
         file.write_text("short")
         file.chmod(0o600)
         broken = self.folder / "config"
-        broken.mkdir()
+        shutil.copytree(SOURCE / "deploy" / "config", broken)
         (broken / "dashboard.yaml").write_text("late_warning_ms: 9\n")
         taken = socket.socket()
         self.addCleanup(taken.close)

@@ -64,7 +64,8 @@ std::string hardest_to_find(const Diagnosis& diagnosis) {
 }
 
 std::string limit_in_words(const Diagnosis& diagnosis) {
-  if (diagnosis.detection_limit <= 0.0) return "No effect that was planted into it is found either.";
+  if (diagnosis.detection_limit <= 0.0)
+    return "No effect that was planted into it is found either.";
   return "An effect that adds " + shown(diagnosis.detection_limit, diagnosis.output_unit) +
          " RMS that a linear model cannot imitate is found as often as not" +
          hardest_to_find(diagnosis) + "; a smaller one may be there.";
