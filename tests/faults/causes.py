@@ -159,7 +159,8 @@ def frozen(victim, _other):
 CAUSES = [(stop, "^stopped by a signal"), (debugger, "^stopped by a debugger"),
           (real_time_program, "waited .*; compiler had it"),
           (work, "^worked for"), (our_own, "waited .*; stillhand-cance had it"), (quota, "quota of processor time"),
-          (frozen, "freezer"), (written, r"^blocked in write\(\)"), (pages, "pages of memory from a disk"), (unanswered, r"^blocked in read\(\)")]
+          (frozen, "freezer"), (written, r"^blocked in write\(\)"), (unanswered, r"^blocked in read\(\)"),
+          (pages, "pages of memory from a disk")]
 
 
 def prepare(folder):

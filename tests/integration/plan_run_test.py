@@ -23,7 +23,7 @@ def tones(seed):
 def tied_recording(file):
     """a_z follows a_x, so a force of either is one of the other."""
     motion, sideways, noise = tones(1), tones(2), random.Random(3)
-    # The channels of a session's pegged trial; of the stick, which stands still, some sessions leave out one or the other.
+    # The channels of a session's pegged trial. The stick stands still: some sessions leave its angle or its rate out.
     lines = ["t [s],a_x [m/s^2],a_y [m/s^2],a_z [m/s^2],roll [rad],theta [rad],omega [rad/s],f [N],f_motor [N]"]
     force = 0.0
     for n in range(40 * RATE_HZ):

@@ -6,7 +6,8 @@
     python3 tests/naming/enter.py narx RECORDINGS ENTRY
 
 `stillhand` names and predicts (`diagnose`, `predict`). Three predict alone, from a_y: `narx`, a polynomial difference
-model, `fir`, a long impulse response, and `octave`, the state space of octave-control (`moen4`, SLICOT). A tool sees rec_0001_train.csv, and of rec_0001_test.csv every column but the force.
+model, `fir`, a long impulse response, and `octave`, the state space of octave-control (`moen4`, SLICOT). A tool sees
+rec_0001_train.csv, and of rec_0001_test.csv every column but the force.
 """
 import argparse
 import json

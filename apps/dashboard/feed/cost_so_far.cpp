@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "services/bus/trial_codec.hpp"
 #include "services/core/contract/time_difference.hpp"
@@ -11,18 +12,31 @@
 #include "services/messages/sensing/codec.hpp"
 
 namespace stillhand::dashboard {
+namespace {
+
+// A received tick outside of these is none: sums with it do not overflow.
+bool is_sound(Tick tick) { return tick >= 0 && tick <= Tick{1} << 60; }
+
+}  // namespace
 
 CostSoFar::CostSoFar(const session::AnswerConfigs& configs)
     : configs_(configs), on_time_(configs) {}
 
+// A session has a model for each identification; numbers without end are another program's.
+void CostSoFar::keep(std::int32_t number, cancellation::ControlModel model) {
+  constexpr std::size_t kMostModels = 256;
+  if (models_.size() >= kMostModels && !models_.contains(number)) return;
+  models_.insert_or_assign(number, std::move(model));
+}
+
 void CostSoFar::take(const stillhand_msgs::FeedthroughModel& model) {
   if (!model.usable() || model.to_position()) return;
-  models_.insert_or_assign(model.model(), cancellation::control_model(cancellation::from_idl(
-                                              model, configs_.cancellation.sampling)));
+  keep(model.model(),
+       cancellation::control_model(cancellation::from_idl(model, configs_.cancellation.sampling)));
 }
 
 void CostSoFar::take(const stillhand_msgs::AugmentedModel& model) {
-  models_.insert_or_assign(model.model(), cancellation::from_idl(model));
+  keep(model.model(), cancellation::from_idl(model));
 }
 
 void CostSoFar::take(const stillhand_msgs::TrialAssignment& assignment) {
@@ -60,6 +74,7 @@ CostSoFar::Row& CostSoFar::row_of(Tick tick) {
 
 void CostSoFar::take(const stillhand_msgs::RawSample& raw) {
   const Tick tick = raw.tick();
+  if (!is_sound(tick)) return;
   const auto kept = static_cast<Tick>(kRows) - kMargin;
   if (next_ < 0 || tick > newest_ + kept || tick < newest_ - kept) begin_at(tick);
   Row& row = row_of(tick);
@@ -73,21 +88,21 @@ void CostSoFar::take(const stillhand_msgs::RawSample& raw) {
 }
 
 void CostSoFar::take(const stillhand_msgs::Sensed& sensed, std::int64_t stamp_ns) {
-  if (sensed.tick() >= next_) row_of(sensed.tick()).sensed_ns = stamp_ns;
+  if (is_sound(sensed.tick()) && sensed.tick() >= next_) row_of(sensed.tick()).sensed_ns = stamp_ns;
 }
 
 void CostSoFar::take(const stillhand_msgs::MotorCommand& command, std::int64_t stamp_ns) {
-  if (command.tick() < next_) return;
+  if (!is_sound(command.tick()) || command.tick() < next_) return;
   Row& row = row_of(command.tick());
   row.command_ns = stamp_ns;
   row.model = command.model();
 }
 
 void CostSoFar::take(const stillhand_msgs::RigTruth& truth) {
-  if (truth.tick() < next_) return;
-  row_of(truth.tick()).used = {truth.feedthrough_force_n(), truth.motor_force_n(),
-                               truth.platform_acceleration_m_s2(), truth.motor_tick(),
-                               truth.motor_permitted()};
+  if (!is_sound(truth.tick()) || truth.tick() < next_) return;
+  row_of(truth.tick()).used = {
+      truth.feedthrough_force_n(), truth.motor_force_n(), truth.platform_acceleration_m_s2(),
+      is_sound(truth.motor_tick()) ? truth.motor_tick() : Tick{-1}, truth.motor_permitted()};
 }
 
 // The model that the canceller runs, from the tick at which it began to.
@@ -119,8 +134,8 @@ void CostSoFar::judge(const Row& row) {
   if (late_) cost_->late[static_cast<std::size_t>(*late_)] += sums.lateness;
 }
 
-// Who was late pays until the force is back where it would be; whoever is later meanwhile, from
-// then on.
+// Who was late pays until the force is back where it would be. If another one is later meanwhile,
+// that one pays from then on.
 void CostSoFar::blame(const Row& row, double late_n) {
   constexpr double kShown_n = 0.01;
   if (late_ && std::abs(late_n) < kShown_n) late_.reset();

@@ -74,6 +74,7 @@ class CostSoFar {
     std::optional<Used> used;
   };
 
+  void keep(std::int32_t number, cancellation::ControlModel model);
   Row& row_of(Tick tick);
   void begin_at(Tick tick);
   void judge(const Row& row);

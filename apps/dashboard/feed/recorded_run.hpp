@@ -17,7 +17,7 @@ namespace stillhand::dashboard {
 /// the time line of faults and events.
 ///
 /// States on the way are kept, one a second or kMostKept over the whole, so that any instant is
-/// reached by feeding at most what lies behind one of them.  Bounded memory: a state takes 1.5 MB.
+/// reached by feeding at most what lies behind one of them.  Bounded memory: a state takes 1.8 MB.
 /// One thread.
 class RecordedRun {
  public:

@@ -6,6 +6,7 @@
 
 #include "apps/libraries/session/clock_line.hpp"
 #include "services/core/contract/tick.hpp"
+#include "services/core/contract/time_difference.hpp"
 
 namespace stillhand::session {
 namespace {
@@ -34,7 +35,7 @@ constexpr std::array<Channel, 8> kChannels{{{"answer_age", "s"},
                                             {"interlock_closed", "-"}}};
 
 double seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return 1e-9 * static_cast<double>(to_ns - from_ns);
+  return 1e-9 * static_cast<double>(difference_ns(to_ns, from_ns));
 }
 
 /// What the samples of a tick say; each time holds the one before where its message is lost.

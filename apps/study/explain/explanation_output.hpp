@@ -24,7 +24,7 @@ report::Page explanation_page(const Explanation& explanation, const std::string&
 /// The candidates, with the source of each range.
 report::Table causes_table(const std::vector<Cause>& causes);
 
-/// Of the spread: its figure, its sections, and who of the judged causes is least told apart from
+/// Of the spread: its figure, its sections, and the judged cause that is hardest to separate from
 /// one.
 report::Figure figure_spread(const Spread& spread);
 void add_spread(report::Page& page, const Spread& spread, const report::Drawing& drawing);

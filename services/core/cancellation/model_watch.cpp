@@ -13,7 +13,7 @@ constexpr Tick kBlock_ticks = ticks_in(kBlock_s);
 constexpr Tick kSettle_ticks = ticks_in(3.0);
 // Lost ticks over which the filters go on as if nothing were lost.
 constexpr Tick kMostLost_ticks = 10;
-// Less motion than this tells nothing: a tenth of a millimetre RMS, as in CC-11.
+// Less motion than this says nothing: a tenth of a millimetre RMS, as in CC-11.
 constexpr double kLeastMotion_m2 = 1e-4 * 1e-4 * static_cast<double>(kBlock_ticks);
 
 constexpr double kHour_s = 3600.0;

@@ -66,7 +66,7 @@ struct Plan {
   Eigen::MatrixXd best_margin;      ///< of each pair, the largest of all designs, Eq. NR-10
   std::size_t tried = 0;            ///< designs
 
-  /// No design tells the two apart, whichever is true, Eq. NR-12.
+  /// No design separates the two, whichever is true, Eq. NR-12.
   [[nodiscard]] bool out_of_reach(Eigen::Index i, Eigen::Index j) const {
     return best_margin(i, j) < kHopeless && best_margin(j, i) < kHopeless;
   }
