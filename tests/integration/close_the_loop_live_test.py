@@ -72,6 +72,8 @@ class CloseTheLoopLiveTest(FolderCase):
                    if row["enabled [-]"] in ("1", "true")}
         self.assertEqual(enabled, {"1000"})
 
+    # interrupt_test does the same to `lab`, by default.
+    @campaign
     def test_ctrl_c_during_a_trial_leaves_a_whole_recording(self):
         process = subprocess.Popen([STILLHAND, "close-the-loop", "--live", "--domain", str(next_domain()),
                                     "--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3",

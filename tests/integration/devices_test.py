@@ -148,6 +148,7 @@ class SlowMoog(threading.Thread):
 
 
 class DevicesTest(DevicesCase):
+    @campaign
     def test_a_platform_that_rises_for_three_seconds_delays_the_trial_and_ends_nothing(self):
         config = loose_settings(self.folder / "config")
         moog = SlowMoog(3.0)

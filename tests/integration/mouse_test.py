@@ -9,7 +9,7 @@ import os
 import time
 
 import lab_process
-from lab_process import MATCH_LIMIT_S, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, hold, loose_settings
+from lab_process import MATCH_LIMIT_S, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, campaign, hold, loose_settings
 from virtual_display import VirtualDisplay, missing_tools
 
 TITLE = "Stillhand"
@@ -206,6 +206,7 @@ class WindowEndTest(MouseTestCase):
         self.display.press_close_button(window)
         self.assert_ended(lab, "the tracking window was closed")
 
+    @campaign
     def test_ctrl_c_closes_the_window(self):
         lab = self.start()
         self.wait_for_window(lab)

@@ -6,7 +6,7 @@ second writer opens the interlock, and an event with its name is recorded. Or it
 trial is over and the interlock open: the lab takes a process's word from its participant alone.
 """
 import lab_process
-from lab_process import STRANGER, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, quick_session
+from lab_process import STRANGER, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
 
 PUSHED_N = 25.0           # the stranger's command, and the limit of the motor
 # The canceller's own force in this session: 8.7 N at most in a run without a stranger. 20 N leaves twice that.
@@ -43,6 +43,7 @@ class OneSourceTest(LabTestCase):
         trial = lab.summary()["trials"][-1]
         self.assertIn(named, trial["aborted"])
 
+    @campaign
     def test_a_program_that_reports_in_the_rigs_name_ends_no_trial(self):
         lab = self.lab(*quick_session(self.folder / "config"), "--trial-seconds", 10)
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
