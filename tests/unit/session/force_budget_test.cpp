@@ -117,6 +117,9 @@ TEST(ForceBudgetTest, AnUnknownFeedthroughOrModelHasNoneAndWrongSettingsAreFound
   EXPECT_FALSE(split_trial(session.recording, session.trial, {}).budget);
   session.recording.control_models.clear();
   EXPECT_NE(split_trial(session.recording, session.trial, {}).why.find("model"), std::string::npos);
+  for (auto& truth : session.recording.rig_truths) truth.feedthrough_force_n(NAN);
+  EXPECT_NE(split_trial(session.recording, session.trial, others).why.find("devices"),
+            std::string::npos);
 }
 
 }  // namespace
