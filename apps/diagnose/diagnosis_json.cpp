@@ -227,6 +227,8 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   add("verdict       {}{}\n", diagnosis.verdict(),
       !diagnosis.no_model && none_carried(diagnosis)
           ? ", none of which can be used for another recording: --save writes the linear model"
+      : !diagnosis.no_model && diagnosis.options.search.most_effects == 0
+          ? "; no effect was looked for (--most-effects 0)"
           : "");
   if (diagnosis.stability) add("stability     {}\n", stability_in_words(*diagnosis.stability));
   if (diagnosis.no_model) {
@@ -259,9 +261,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   add("noise floor   {:.4g} {} ({:.4g} to {:.4g}), the estimated error of a perfect model\n",
       diagnosis.noise_floor.rmse, unit, diagnosis.noise_floor.low, diagnosis.noise_floor.high);
   if (diagnosis.unexplained) {
-    const bool searched = diagnosis.options.search.most_effects > 0;
-    add("unexplained   {}{}\n", diagnosis.unexplained->what,
-        searched ? "" : "; none was looked for (--most-effects 0)");
+    add("unexplained   {}\n", diagnosis.unexplained->what);
   }
   for (const std::string& note : diagnosis.notes) add("note          {}\n", note);
   return text;

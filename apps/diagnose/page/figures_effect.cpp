@@ -20,29 +20,6 @@ constexpr std::size_t kEffectBins = 24;
 
 std::string effect_figure_name(std::size_t which) { return "effect_" + std::to_string(which + 1); }
 
-struct Slope {
-  double value = 0.0;
-  double error = 0.0;
-};
-
-// Of the residual without the effect on what the effect predicts.
-Slope slope_of(const Evidence& evidence, const EffectTrace& trace) {
-  double product = 0.0;
-  double square = 0.0;
-  double left = 0.0;
-  double weight = 0.0;
-  for (std::size_t n = 0; n < trace.without.size(); ++n) {
-    if (!(evidence.after.run.weight[n] > 0.0)) continue;
-    product += trace.without[n] * trace.contribution[n];
-    square += trace.contribution[n] * trace.contribution[n];
-    left += evidence.after.residual[n] * evidence.after.residual[n];
-    weight += 1.0;
-  }
-  if (!(square > 0.0)) return {};
-  return {product / square,
-          std::sqrt(left / std::max(weight, 1.0) * evidence.correlation_samples / square)};
-}
-
 // An effect that leaves samples out predicts nothing of the others, except through the refit.
 bool predicts(const Evidence& evidence, std::size_t which, const EffectTrace& trace) {
   const diagnosis::Effect& effect = evidence.found.effects.at(which).effect;
@@ -67,14 +44,10 @@ Panel against_prediction(const Evidence& evidence, const EffectTrace& trace) {
                    .colour = report::Colour::kNeutral,
                    .x = {axis.low, axis.high},
                    .y = {axis.low, axis.high}};
-  const Slope slope = slope_of(evidence, trace);
   Panel panel;
   panel.x.label = axis_label("predicted by the effect", unit);
   panel.y.label = axis_label("residual without it", unit);
   panel.series = {one, bars};
-  panel.notes = {
-      {.text = "slope " + report::number(slope.value, 3) + " ± " + report::number(slope.error, 3),
-       .corner = report::Corner::kBottomRight}};
   return panel;
 }
 
@@ -112,7 +85,7 @@ report::Figure figure_effect(const Evidence& evidence, std::size_t which) {
   if (!is_predicted) return figure;
   figure.caption +=
       std::string(
-          " Panel with the slope: the residual without the effect, over what the effect "
+          " Panel with slope 1: the residual without the effect, over what the effect "
           "predicts. ") +
       (trace.refitted ? "The model without the effect was fitted again."
                       : "The model without the effect keeps the other numbers of the joint fit.") +

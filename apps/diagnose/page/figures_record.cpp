@@ -104,7 +104,8 @@ report::Figure figure_prediction(const Evidence& evidence) {
       .caption = std::string("Above: measurement and free run, ") +
                  (found ? "where the effects explain most" : "in the middle of the record") +
                  ". Below: the residuals. The models get the inputs alone. Here they are fitted to "
-                 "the whole record; Table 1 is of held-out data. In a gap, samples have no weight.",
+                 "the whole record; the table of errors is of held-out data. In a gap, samples "
+                 "have no weight.",
       .panels = {above, below},
       .width_px = 980,
       .height_px = 560};

@@ -137,8 +137,9 @@ Table error_table(const Diagnosis& found) {
   table.caption =
       "RMS error of the free run (from the inputs alone) on blocks of time that the fit has not "
       "seen (held out), and its 95 % interval over the blocks. VAF: variance accounted for, the "
-      "share of the output's variance that is explained. Last column: the error over the "
-      "noise floor.";
+      "share of the output's variance that is explained. All of this is within this recording; "
+      "another one may leave more. The noise floor's range is that of its estimates, no interval "
+      "of 95 %. Last column: the error over the noise floor.";
   table.header = {"model",  "RMSE [" + unit + "]", "95 % interval [" + unit + "]", "VAF [%]",
                   "change", "over the floor"};
   const double floor = found.noise_floor.rmse;
@@ -166,8 +167,8 @@ Table effect_table(const Diagnosis& found) {
   table.caption =
       "Effects in the order in which they were added. Form: through the body, the effect "
       "acts before the linear part; beside the body, it is added to the output. p: the probability "
-      "of such an "
-      "improvement by chance, from the signed ranks of the blocks. Ties: other kinds that explain "
+      "of such an improvement by chance, from the signed ranks of the blocks, before the choice "
+      "among candidates; N blocks give 2^-N at the least. Ties: other kinds that explain "
       "the record equally well; the simplest was taken. Saved: the part of the effect that holds "
       "in "
       "another recording, so that predict uses it. control-model prints what the motor does "

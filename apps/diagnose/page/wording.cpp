@@ -178,9 +178,12 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
     return "Effects found: " + model + " lacks " + enumerated(names) +
            (diagnosis.unexplained ? ", and something that no kind of effect explains" : "") + ". " +
            (too_small.empty() ? "" : too_small + " ") + error_in_words(diagnosis) +
-           " The probability of such an improvement by chance is " + p_value(largest_p) +
-           (names.size() == 1 ? "." : " for the smallest of them.") +
-           (tied ? " Other kinds explain the data as well: see \"ties\" in Table 2." : "");
+           " Chance alone improves the blocks " +
+           (names.size() == 1 ? "as much" : "as the smallest of them does") +
+           " with a probability of " + p_value(largest_p) +
+           ", the choice among the candidates not counted." +
+           (tied ? " Other kinds explain the data as well: see \"ties\" in the table of effects."
+                 : "");
   }
   const std::string left = shown(diagnosis.baseline_error.rmse, diagnosis.output_unit) +
                            " RMS on held-out data (95 %: " +
@@ -192,6 +195,9 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            "quantity that was tested; chance does not do that. The model leaves an error of " +
            left + "; the noise floor is " +
            shown(diagnosis.noise_floor.rmse, diagnosis.output_unit) + ".";
+  }
+  if (diagnosis.options.search.most_effects == 0) {
+    return "No effect was looked for (--most-effects 0). " + model + " leaves " + left + ".";
   }
   if (!too_small.empty()) {
     return "Nothing missing that counts. " + too_small + " " + error_in_words(diagnosis);

@@ -150,7 +150,22 @@ diagnosis::Measurement read_session(const std::string& path, const ReadOptions& 
                             : read_session_rows(path, options.session_trial, true);
   if (!session.loss.empty()) runtime::remark(session.loss);
   if (options.lateness) add_lateness(path, session.rows);
-  return screened(std::move(session.rows), options, session.notes);
+  diagnosis::Measurement out = screened(std::move(session.rows), options, session.notes);
+  if (!session.moves.empty()) {
+    out.notes.push_back(
+        fmt::format("In trial {} the stick moves: f is the force of stick and motor at the hand.",
+                    session.moves));
+    out.screening.push_back(
+        {"f",
+         "stick_moves",
+         {out.time_s().front()},
+         1.0,
+         "f: in trial " + session.moves +
+             " the stick moves, so f is the force of stick and motor at the "
+             "hand, not that of a body on a held stick; the pegged trial has it",
+         !options.lateness});
+  }
+  return out;
 }
 
 // The mapping of a file; signs and sample rate that are options count before those of a file.

@@ -151,6 +151,9 @@ SessionRows read_session_rows(const std::string& path, const std::string& trial,
   const SessionTrial& chosen = choose(trials, trial, path, last);
   SessionRows out;
   out.notes = notes_of(trials, chosen);
+  if (chosen.trial.number >= 0 && chosen.trial.phase != TrialPhase::kPegged) {
+    out.moves = chosen.name();
+  }
   TrialStreams streams = read_streams(reader, chosen, trials.rig);
   const auto enough = [&](const auto& stream) {
     return !stream.ticks.empty() &&

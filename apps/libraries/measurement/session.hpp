@@ -16,7 +16,8 @@ struct SessionRows {
   /// from the rows, because they are no measurement.
   std::vector<std::array<double, 2>> weights;
   std::vector<std::string> notes;
-  std::string loss;  ///< one line about data that the file has lost; empty: none
+  std::string loss;   ///< one line about data that the file has lost; empty: none
+  std::string moves;  ///< the trial's name where the stick is not pegged; else empty
 };
 
 /// Reads the measured ticks of one trial from `stillhand/sensed` (a_x, a_y, a_z, roll, theta,

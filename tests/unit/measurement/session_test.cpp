@@ -124,6 +124,16 @@ TEST(SessionTest, ATrackingTrialHasTargetAndCursorToo) {
   EXPECT_DOUBLE_EQ(sut.find("x_p")->values.front(), 9.0 * 0.4);
 }
 
+// The force of stick and motor is no body's: a model of it would read the canceller's own filter.
+TEST(SessionTest, TheForceOnAStickThatMovesIsUnsoundExceptNextToLateness) {
+  ReadOptions options{"1"};
+  EXPECT_THAT(diagnosis::why_unsound(read_measurement(file_of(session()), options), {"f"}),
+              HasSubstr("the stick moves"));
+  EXPECT_EQ(diagnosis::why_unsound(read_measurement(file_of(session()), {"0"}), {"f"}), "");
+  options.lateness = true;
+  EXPECT_EQ(diagnosis::why_unsound(read_measurement(file_of(session()), options), {"f"}), "");
+}
+
 TEST(SessionTest, ATrialIsKnownByNumberAndByTheLetterOfItsCondition) {
   const std::string path = file_of(session());
   EXPECT_EQ(read_measurement(path, {"A"}).size(), 400u);
