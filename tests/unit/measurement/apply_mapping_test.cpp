@@ -69,6 +69,9 @@ TEST(ApplyMappingTest, TheRefusalShowsTheMappingThatWouldDo) {
   EXPECT_THAT(error_of("p,q,r\n0,1,2\n0.1,1,2\n"),
               HasSubstr("--map 'p=t [s]' 'q=a_y [m/s^2]' 'r=f [N]'"));
   EXPECT_THAT(error_of("it's,it's,x\n0,1,2\n0.1,1,2\n"), HasSubstr("--map '#1=t [s]' '#2=a_y"));
+  EXPECT_THAT(error_of("p,v_y [m/s],force\n0,1,2\n0.1,1,2\n"),
+              HasSubstr("no other column has a unit of a_y, such as m/s^2"))
+      << "a mapping that the next call would refuse";
 }
 
 // The mapping of a refusal is accepted as it is.

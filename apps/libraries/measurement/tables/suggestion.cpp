@@ -31,6 +31,11 @@ std::string likely_time_unit(TableFile& file, const std::string& from) {
   }
 }
 
+// A column without a unit may hold anything.
+bool fits(const ColumnHead& column, const std::string& name) {
+  return column.unit.empty() || unit_conversion(column.unit, {}, si_unit(name));
+}
+
 // Columns that resemble nothing are suggested as what is still missing.
 void fill_guess(const TableHead& head, bool timed, Mapping& guess) {
   std::vector<std::string> wanted{"a_y", "f"};
@@ -39,7 +44,8 @@ void fill_guess(const TableHead& head, bool timed, Mapping& guess) {
     if (std::ranges::find(guess.columns, name, &ColumnWish::name) != guess.columns.end()) continue;
     for (std::size_t i = 0; i < head.columns.size(); ++i) {
       const std::string from = reference_to(head, i);
-      if (std::ranges::find(guess.columns, from, &ColumnWish::from) != guess.columns.end())
+      if (!fits(head.columns[i], name) ||
+          std::ranges::find(guess.columns, from, &ColumnWish::from) != guess.columns.end())
         continue;
       ColumnWish wish{from, name, si_unit(name), {}};
       guess.columns.insert(name == "t" ? guess.columns.begin() : guess.columns.end(), wish);
@@ -66,6 +72,14 @@ Mapping suggestion(TableFile& file) {
 std::string words_to_add(TableFile& file) {
   const TableHead& head = file.head();
   const Mapping guess = suggestion(file);
+  const bool all_used = guess.columns.size() >= head.columns.size();
+  for (const char* name : {"a_y", "f"}) {
+    if (all_used ||
+        std::ranges::find(guess.columns, name, &ColumnWish::name) != guess.columns.end())
+      continue;
+    return std::string("no other column has a unit of ") + name + ", such as " + si_unit(name) +
+           "; --input and --output name other channels";
+  }
   const bool timed =
       head.has_times || head.rate_hz > 0.0 ||
       std::ranges::find(guess.columns, "t", &ColumnWish::name) != guess.columns.end();
