@@ -238,8 +238,7 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")
       ->needs(live)
       ->capture_default_str();
-  verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
-      ->needs(live)
+  verb->add_option("--rig", lab.rig, "number of the rig on the bus, which the model names")
       ->capture_default_str();
   add_comparison_options(*verb, arguments, effect, live);
   diagnose::add_diagnose_options(*verb, arguments->recorded.diagnose);

@@ -241,7 +241,7 @@ bool SessionScript::run_trial(lab::LiveTrials& trials, std::size_t step,
     prompt.wait_s = rest_s + lab::kTrialLead_s +
                     static_cast<double>(planned.trial.ramp_ticks) * kControlPeriod_s;
     trials.show(prompt);
-    if (rest_s > 0.0) trials.rest("rest", rest_s);
+    if (rest_s > 0.0) trials.rest("rest", rest_s, {});
     first_ = false;
     if (!look(trials)) return false;
     if (progress_.next() != step) return true;  // during the rest, the last trial was asked again
@@ -276,7 +276,8 @@ bool SessionScript::take_break(lab::LiveTrials& trials, std::size_t number) {
   }
   prompt.wait_s = folder_.design().break_s;
   trials.show(prompt);
-  trials.rest(fmt::format("break after block {}", plan_[number].block), folder_.design().break_s);
+  trials.rest(fmt::format("break after block {}", plan_[number].block), folder_.design().break_s,
+              {});
   if (!look(trials)) return false;
   add({.kind = EntryKind::kBreakOver, .step = static_cast<std::int64_t>(number)});
   first_ = true;  // the break was the rest

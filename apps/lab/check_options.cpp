@@ -11,11 +11,14 @@
 
 #include "apps/lab/control_model.hpp"
 #include "apps/lab/core/prompt.hpp"
+#include "apps/lab/live_closing.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
 #include "services/core/cancellation/config.hpp"
 #include "services/core/cancellation/parts/countermeasure.hpp"
 #include "services/core/cancellation/parts/recipe.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
+#include "services/core/identification/identifier.hpp"
 #include "services/core/motion/motion_generator.hpp"
 #include "services/core/vehicle/vehicle_settings.hpp"
 #include "services/devices/device_rig/load_devices.hpp"
@@ -84,6 +87,28 @@ void check_combinations(const LabOptions& options) {
                  {"--motion", other_motion}},
                 "these as arguments of the services, which run already");
   }
+}
+
+// What the watch watches, where the recording is read while it is written.
+void check_closing(const LabOptions& options) {
+  if (!options.close_live) return;
+  if (std::ranges::find(options.protocol.conditions, session::Condition::kC) ==
+      options.protocol.conditions.end()) {
+    throw ConfigError("--close", "live without the condition C", "it with C");
+  }
+  refuse_with("--close live",
+              {{"--model", !options.model.empty()},
+               {"--canceller", options.canceller != "now"},
+               {"--attach", options.attach},
+               {"--inventory", !options.inventory.empty()}},
+              "it with the session's own model, on one machine");
+  if (settings::load<identification::Config>(options.config / "identification.yaml",
+                                             "identification")
+          .false_alarms_h == 0.0) {
+    throw ConfigError("--close", "live with identification.false_alarms_h 0",
+                      "it with a watch on the model");
+  }
+  report::require_gnuplot();  // the diagnosis draws
 }
 
 // As the process of cancellation will make it, with models in place of those that the session
@@ -191,8 +216,12 @@ motion::RideRecord ride_of(const LabOptions& options) {
 
 AskedMotions check_options(const LabOptions& options) {
   const auto planned = session::plan(options.protocol);  // checks durations and road
-  const auto& trials = options.trials.empty() ? planned : options.trials;
+  auto trials = options.trials.empty() ? planned : options.trials;
   check_combinations(options);
+  check_closing(options);
+  if (options.close_live) {
+    for (const auto& each : closing_trials(options.protocol)) trials.push_back(each);
+  }
   check_driven(options, trials);
   check_mitigations(options, trials);
   check_values(options);

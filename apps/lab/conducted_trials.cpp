@@ -73,17 +73,33 @@ void ConductedTrials::run(const Script& script) {
 }
 
 const session::TrialOutcome& ConductedTrials::run(const session::PlannedTrial& planned) {
+  return run_as(planned, planned.trial.number);
+}
+
+const session::TrialOutcome& ConductedTrials::run_between(const session::PlannedTrial& planned) {
+  const std::int64_t number = outcomes_.back().planned.trial.number - between_;
+  ++between_;
+  return run_as(planned, number);
+}
+
+void ConductedTrials::say(const std::string& line) {
+  progress_.finish();
+  runtime::remark(line);
+}
+
+const session::TrialOutcome& ConductedTrials::run_as(const session::PlannedTrial& planned,
+                                                     std::int64_t number) {
   if (options_.wait_for_start) conductor_.pause();
   session::PlannedTrial numbered = planned;
   for (;;) {
     // A number is used once: the trial that had it is over.
-    numbered.trial.number = planned.trial.number + stopped_;
+    numbered.trial.number = number + between_;
     outcomes_.push_back(conductor_.run(numbered));
     if (const auto motion = asked_.find(planned.trial.number); motion != asked_.end()) {
       outcomes_.back().asked = motion->second;
     }
     if (!outcomes_.back().stopped) break;
-    ++stopped_;
+    ++between_;
   }
   return finished();
 }
@@ -106,17 +122,22 @@ const session::TrialOutcome& ConductedTrials::finished() {
 }
 
 // Without a model there is nothing to cancel with: the session ends here, unless it cancels
-// nothing.  A stick on a desk with a simulated platform has no feedthrough to identify.
+// nothing, or has one.  A stick on a desk with a simulated platform has no feedthrough to identify.
 void ConductedTrials::take_model(session::TrialOutcome& outcome) {
   const Conductor::AwaitedModel awaited = conductor_.await_model(outcome.planned.trial.number);
   if (awaited.failure.empty()) {
     // That of a free stick goes from identification to the canceller alone.
-    if (!awaited.model.to_position()) model_ = identification::from_idl(awaited.model);
+    if (awaited.model.to_position()) return;
+    model_ = identification::from_idl(awaited.model);
+    identified_ = true;
     return;
   }
   const bool answered = awaited.model.trial() == outcome.planned.trial.number;
   const bool pegged = outcome.planned.label == session::Condition::kIdentification;
-  if (answered && pegged && !needs_model(options_)) return note(awaited.failure);
+  if (answered && pegged && (identified_ || !needs_model(options_))) {
+    outcome.no_model = awaited.failure;
+    return note(awaited.failure);
+  }
   outcome.completed = false;
   outcome.aborted = awaited.failure;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,11 +37,15 @@ class ConductedTrials final : public LiveTrials {
 
   const session::TrialOutcome& run(const session::PlannedTrial& planned) override;
   const session::TrialOutcome& run_once(const session::PlannedTrial& planned) override;
+  const session::TrialOutcome& run_between(const session::PlannedTrial& planned) override;
   void show(const Prompt& prompt) override { conductor_.show(prompt); }
   std::optional<std::int64_t> ask(const Prompt& prompt, const std::string& what) override {
     return conductor_.ask(prompt, what);
   }
-  void rest(const std::string& what, double seconds) override { conductor_.rest(what, seconds); }
+  void rest(const std::string& what, double seconds, const std::function<bool()>& over) override {
+    conductor_.rest(what, seconds, over);
+  }
+  void say(const std::string& line) override;
   void note(const std::string& text) override { conductor_.note(text); }
   Asked asked() override { return conductor_.asked(); }
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
@@ -50,6 +55,8 @@ class ConductedTrials final : public LiveTrials {
   [[nodiscard]] bool interrupted() const override { return conductor_.interrupted(); }
 
  private:
+  /// @param number  to which those that came between the plan's trials are added
+  const session::TrialOutcome& run_as(const session::PlannedTrial& planned, std::int64_t number);
   /// The newest outcome, once its model is there.
   const session::TrialOutcome& finished();
   void take_model(session::TrialOutcome& outcome);
@@ -58,7 +65,8 @@ class ConductedTrials final : public LiveTrials {
   const AskedMotions& asked_;
   std::vector<session::TrialOutcome>& outcomes_;
   identification::FeedthroughModel model_;
-  std::int64_t stopped_ = 0;  ///< trials that a request stopped so far
+  bool identified_ = false;   ///< there is such a model
+  std::int64_t between_ = 0;  ///< trials that a request stopped, or that the plan does not have
   report::ProgressLine progress_;
   Clocks clocks_;
   Conductor conductor_;

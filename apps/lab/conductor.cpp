@@ -244,8 +244,8 @@ void Conductor::pause() {
   seen_.requests.pause();
 }
 
-void Conductor::rest(const std::string& what, double seconds) {
-  Rest rest(what, seconds, trouble_);
+void Conductor::rest(const std::string& what, double seconds, const std::function<bool()>& over) {
+  Rest rest(what, seconds, trouble_, over);
   run_stage(rest);
 }
 

@@ -61,7 +61,8 @@ class Conductor {
   /// @throws std::runtime_error, RefusedByProcess
   std::optional<std::int64_t> ask(const Prompt& prompt, const std::string& what);
   /// Waits, at most that long; a request for a start ends it.
-  void rest(const std::string& what, double seconds);
+  /// @param over  ends it too, where there is one
+  void rest(const std::string& what, double seconds, const std::function<bool()>& over);
   /// An event of the session, for the recording.
   void note(const std::string& text) {
     service_.note_event(stillhand_msgs::EVENT_NOTE, text.c_str());

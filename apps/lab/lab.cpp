@@ -13,6 +13,7 @@
 #include "apps/lab/domain_lock.hpp"
 #include "apps/lab/hosts.hpp"
 #include "apps/lab/launches.hpp"
+#include "apps/lab/live_closing.hpp"
 #include "apps/lab/output_folder.hpp"
 #include "apps/lab/processes.hpp"
 #include "apps/lab/subject_settings.hpp"
@@ -180,7 +181,10 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     for (std::size_t place = 0; place < plan.size(); ++place) {
       const session::PlannedTrial& planned = plan[place];
       trials.show(place == 0 ? before_trials(options) : before_trial(options, plan, place));
-      if (trials.interrupted() || !trials.run(planned).completed) break;
+      if (trials.interrupted()) break;
+      const session::TrialOutcome outcome = trials.run(planned);
+      if (!outcome.completed) break;
+      if (options.close_live && !LiveClosing(options, trials).after(outcome)) break;
       if (!model || planned.trial.phase != TrialPhase::kPegged) continue;
       if (const std::string refused = trials.use(*model); !refused.empty()) {
         throw std::runtime_error(options.model.string() + ": " + refused);

@@ -30,7 +30,8 @@ struct LabArguments {
   std::string who = "simulated";
   std::string motion = "noise";
   std::vector<std::filesystem::path> arms;
-  bool ordinary = false;         // scheduling
+  bool ordinary = false;  // scheduling
+  std::string close;
   std::vector<std::string> rig;  // its number, what it is made of, or both
   std::optional<std::string> road_class;
   std::optional<double> road_speed_m_s;
@@ -184,6 +185,11 @@ void add_motion_options(CLI::App& lab, LabOptions& options, LabArguments& argume
                  "close-the-loop` and `stillhand control-model` write such a file")
       ->excludes(canceller)
       ->check(settings::check_name);
+  lab.add_option("--close", arguments.close,
+                 "live: if the model no longer holds in the trial of C, the pause behind it "
+                 "identifies and diagnoses again, and C runs again, as C+ if that leaves less and "
+                 "the experimenter agrees")
+      ->check(CLI::IsMember({"live"}));
   lab.add_option("--undeclared-effect", options.undeclared_effect,
                  "seed of an effect that only the rig knows; it stays sealed until the results "
                  "are written; 0: no effect")
@@ -262,6 +268,7 @@ void take_arguments(const LabArguments& arguments, LabOptions& options) {
   take_perturbation(arguments, options);
   take_rig(arguments.rig, options);
   options.real_time = !arguments.ordinary;
+  options.close_live = !arguments.close.empty();
   if (!arguments.plan.empty()) take_plan(arguments.plan, options);
 }
 
@@ -270,7 +277,7 @@ void group_options(CLI::App& lab) {
   settings::in_group(lab, "Motion and vehicle",
                      {"--motion", "--ride", "--road-class", "--speed-m-s", "--vehicle"});
   settings::in_group(lab, "Canceller and model",
-                     {"--canceller", "--model", "--arms", "--undeclared-effect"});
+                     {"--canceller", "--model", "--arms", "--close", "--undeclared-effect"});
   settings::in_group(lab, "Trials",
                      {"--identify-seconds", "--subject", "--gamepad", "--wait-for-start", "--video",
                       "--match-seconds", "--stop-key"});

@@ -49,6 +49,7 @@ struct LabOptions {
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
   bool attach = false;                  ///< use services that run already
   bool wait_for_start = false;          ///< each trial waits for a start from the dashboard
+  bool close_live = false;              ///< LiveClosing
   std::filesystem::path stop_key;       ///< evdev device for the emergency stop; empty: none
   recording::KeepOptions keep;          ///< of the session's recording
   recording::OfExperiment experiment;   ///< whose participant is recorded; empty: none

@@ -24,6 +24,9 @@ class LiveTrials {
   virtual const session::TrialOutcome& run(const session::PlannedTrial& planned) = 0;
   /// The same, without the second part: one that a request stopped is not run again.
   virtual const session::TrialOutcome& run_once(const session::PlannedTrial& planned) = 0;
+  /// The same as run(), of a trial that the session's plan does not have: it gets the next number,
+  /// and those of the plan move on.
+  virtual const session::TrialOutcome& run_between(const session::PlannedTrial& planned) = 0;
   /// What the tracking screen shows the participant from now on.
   virtual void show(const Prompt& prompt) = 0;
   /// Shows a prompt with steps and waits for its answer, at most `wait_s` of the prompt.
@@ -31,8 +34,12 @@ class LiveTrials {
   /// @return nothing: its time is over, or a request for a start went on without an answer, or the
   ///         session is interrupted.  @throws std::runtime_error when a process is lost
   virtual std::optional<std::int64_t> ask(const Prompt& prompt, const std::string& what) = 0;
-  /// Waits between trials, until a request for a start or the end.
-  virtual void rest(const std::string& what, double seconds) = 0;
+  /// Waits between trials, until it is over, a request for a start, or the end.
+  /// @param over  looked at every 50 ms or sooner; empty: after its time
+  virtual void rest(const std::string& what, double seconds, const std::function<bool()>& over) = 0;
+  /// One line for the person at the terminal, at once.  It is not on the bus, where a dashboard
+  /// would show it to everybody.
+  virtual void say(const std::string& line) = 0;
   /// One line for the recording, as an event.
   virtual void note(const std::string& text) = 0;
   /// What persons asked of the protocol since the last call.

@@ -33,15 +33,19 @@ constexpr const char* kFigures[]{"session", "tracking", "force", "adaptation", "
 
 std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
-  for (const char* name : kResults) files.push_back(folder / name);
-  for (const char* figure : kFigures) {
-    for (const std::string& name : report::figure_files(figure)) files.push_back(folder / name);
+  // In the folder itself, and of a diagnosis between two trials.
+  for (const std::filesystem::path& place : {folder, folder / kClosingFolder}) {
+    for (const char* name : kResults) files.push_back(place / name);
+    for (const char* figure : kFigures) {
+      for (const std::string& name : report::figure_files(figure)) files.push_back(place / name);
+    }
   }
   for (const std::string_view service : topics::kServices) {
     files.push_back(folder / "logs" / (std::string(service) + ".log"));
   }
   // Of a session over several machines: the profiles, and the lines of each host.
   files.push_back(folder / "logs" / "profiles.xml");
+  files.push_back(folder / "logs" / "closing.log");
   std::error_code error;
   // Of a session with a drawn subject: its settings.
   for (const auto& entry : std::filesystem::directory_iterator(folder / "logs" / "config", error)) {
@@ -177,7 +181,7 @@ void OutputFolder::bring_back() const {
     std::filesystem::create_directories(to.parent_path(), error);
     std::filesystem::rename(file, to, error);
   }
-  for (const char* folder : {"logs/config", "logs", ""}) {
+  for (const char* folder : {"logs/config", "logs", kClosingFolder, ""}) {
     std::filesystem::remove(earlier_ / folder, error);
   }
 }
@@ -206,6 +210,7 @@ void OutputFolder::clear() const {
     }
     std::filesystem::remove(logs, error);  // unless it holds something else
   }
+  std::filesystem::remove(path_ / kClosingFolder, error);  // the same
 }
 
 }  // namespace stillhand::lab

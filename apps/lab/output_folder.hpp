@@ -6,6 +6,9 @@
 
 namespace stillhand::lab {
 
+/// Of the diagnosis between two trials, in a session's folder.
+inline constexpr const char* kClosingFolder = "closing";
+
 /// The folder of a session's results: it is made if need be, proved writable, locked against other
 /// labs, and cleared of the files of an earlier session.  These wait in a hidden folder inside: a
 /// session that never began gives them back; after any other they stay, in `earlier-1`,

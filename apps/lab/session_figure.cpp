@@ -71,7 +71,8 @@ report::Panel hand_panel(const session::TrialResult& trial, Colour colour) {
 std::vector<report::Drawing> draw_session(const session::SessionResult& result,
                                           const std::filesystem::path& folder) {
   std::vector<const session::TrialResult*> shown;
-  for (const auto label : {session::Condition::kB, session::Condition::kC}) {
+  for (const auto label :
+       {session::Condition::kB, session::Condition::kC, session::Condition::kCPlus}) {
     const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
     if (trial != result.trials.end()) shown.push_back(&*trial);
   }
@@ -79,7 +80,8 @@ std::vector<report::Drawing> draw_session(const session::SessionResult& result,
   report::Figure figure;
   figure.name = kSessionFigure;
   figure.caption =
-      "The first 12 s of B and C. Above: the force that the body would put on a stick that is held "
+      "The first 12 s of each trial. Above: the force that the body would put on a stick that is "
+      "held "
       "(feedthrough), and the motor's. Below: target and cursor.";
   figure.columns = static_cast<int>(shown.size());
   figure.height_px = 520;

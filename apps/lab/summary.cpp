@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -40,6 +41,14 @@ void print_model_changes(const std::vector<session::TrialOutcome>& outcomes) {
   for (const std::string& line : model_change_lines(outcomes)) std::printf("%s\n", line.c_str());
 }
 
+// With the trial's number, where C ran again.
+std::string name_in(const session::SessionResult& result, const session::TrialResult& trial) {
+  const std::string name = session::name_of(trial.label);
+  const bool once =
+      std::ranges::count(result.trials, trial.label, &session::TrialResult::label) == 1;
+  return once ? name : fmt::format("{} of trial {}", name, trial.number);
+}
+
 void print_budgets(const session::SessionResult& result) {
   for (const session::TrialResult& trial : result.trials) {
     if (!trial.budget) continue;
@@ -50,7 +59,7 @@ void print_budgets(const session::SessionResult& result) {
           fmt::format("{}{} {}", parts.empty() ? "" : ", ", cause.key, report::number(force_n, 2));
     }
     fmt::print("{} leaves {} N RMS of the feedthrough force; by cause [N]: {}\n",
-               session::name_of(trial.label), report::number(trial.budget->left.force_n, 2), parts);
+               name_in(result, trial), report::number(trial.budget->left.force_n, 2), parts);
   }
 }
 
@@ -70,9 +79,9 @@ void print_models(const session::SessionResult& result,
   }
   if (!control_model.empty()) std::printf("C ran %s instead\n", control_model.c_str());
   for (const session::TrialResult& trial : result.trials) {
-    if (trial.label == session::Condition::kC && std::isfinite(trial.cancelled_share)) {
-      std::printf("C cancels %.1f %% of the feedthrough force, which the simulated rig knows\n",
-                  100.0 * trial.cancelled_share);
+    if (session::cancels(trial.label) && std::isfinite(trial.cancelled_share)) {
+      std::printf("%s cancels %.1f %% of the feedthrough force, which the simulated rig knows\n",
+                  name_in(result, trial).c_str(), 100.0 * trial.cancelled_share);
     }
     if (trial.sensed_share) {
       std::printf(
@@ -172,8 +181,9 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   }
   const std::vector<std::string> uncounted = uncounted_lines(outcomes);
   for (const std::string& line : uncounted) runtime::remark(line);
-  const std::size_t completed = outcomes.size() - uncounted.size();
-  return !interrupted && completed == session::plan(options.protocol).size() ? 0 : 1;
+  const bool whole = std::ranges::all_of(
+      outcomes, [](const auto& outcome) { return outcome.completed || outcome.stopped; });
+  return whole && !interrupted ? 0 : 1;
 }
 
 }  // namespace stillhand::lab

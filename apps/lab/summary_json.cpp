@@ -76,10 +76,12 @@ ordered_json disturbed_json(const session::SessionResult& result, std::int64_t t
   return list;
 }
 
-// null: no motor cancels, or nobody knows the feedthrough.
-ordered_json lateness_json(const session::SessionResult& result, std::int64_t number) {
+// Of a trial that was evaluated; null: its motor does not cancel, or nobody knows the feedthrough.
+void add_cancelling(const session::SessionResult& result, std::int64_t number, ordered_json& json) {
   const auto trial = std::ranges::find(result.trials, number, &session::TrialResult::number);
-  return trial == result.trials.end() ? nullptr : session::budget_json(trial->budget);
+  const bool there = trial != result.trials.end();
+  json["lateness"] = there ? session::budget_json(trial->budget) : nullptr;
+  json["model"] = there ? or_null(trial->models.force) : nullptr;
 }
 
 ordered_json restoration_json(const session::SessionResult& result, session::Condition label) {
@@ -221,8 +223,11 @@ bool simulated_subject(const LabOptions& options) {
 
 const session::TrialResult* trial_of(const session::SessionResult& result,
                                      session::Condition label) {
-  const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
-  return trial == result.trials.end() ? nullptr : &*trial;
+  const session::TrialResult* newest = nullptr;
+  for (const session::TrialResult& trial : result.trials) {
+    if (trial.label == label) newest = &trial;
+  }
+  return newest;
 }
 
 std::optional<double> restoration_of(const session::SessionResult& result,
@@ -233,6 +238,8 @@ std::optional<double> restoration_of(const session::SessionResult& result,
 
 std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result) {
   std::vector<const session::TrialResult*> out;
+  if (const session::TrialResult* plus = trial_of(result, session::Condition::kCPlus))
+    out.push_back(plus);
   for (const session::Condition each : session::conditions_of(session::kLabConditions)) {
     const session::TrialResult* trial = trial_of(result, each);
     if (trial != nullptr && session::is_mitigation(each)) out.push_back(trial);
@@ -319,7 +326,7 @@ ordered_json summary_json(const LabOptions& options,
   for (const session::TrialOutcome& outcome : outcomes) {
     summary["trials"].push_back(trial_json(outcome, options));
     summary["trials"].back()["disturbed"] = disturbed_json(result, outcome.planned.trial.number);
-    summary["trials"].back()["lateness"] = lateness_json(result, outcome.planned.trial.number);
+    add_cancelling(result, outcome.planned.trial.number, summary["trials"].back());
   }
   summary["lost_ticks"] = result.lost_ticks;
   summary["clocks"] = clocks_json(result);

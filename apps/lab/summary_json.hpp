@@ -15,7 +15,7 @@ namespace stillhand::lab {
 
 /// Nobody tracked: no person's pointer, and no stick whose angle a device measures.
 bool simulated_subject(const LabOptions& options);
-/// The trial of a condition; nullptr: none was completed.
+/// The trial of a condition, the newest if C ran again; nullptr: none was completed.
 const session::TrialResult* trial_of(const session::SessionResult& result,
                                      session::Condition label);
 /// (B - C) / (B - A) of a number; nothing without all three conditions.
@@ -26,7 +26,8 @@ std::optional<double> restoration_of(const session::SessionResult& result,
 /// The same of the RMS error behind each trial's first third: the study's share (SU-19).
 std::optional<double> settled_restoration_of(const session::SessionResult& result,
                                              session::Condition label);
-/// The trials with a mitigation of their own, in the order of the study's table.
+/// The trials with a mitigation of their own, in the order of the study's table, and C+ before
+/// them.
 std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result);
 
 /// "C disturbed at 11.5 s: sensing was late by 73 ms, force 0 for 0.12 s": the longest five, one of

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "apps/lab/core/stage.hpp"
@@ -9,14 +10,18 @@
 
 namespace stillhand::lab {
 
-/// A rest between two trials.  It ends after its time, with a request for a start, or when there is
-/// trouble, which the next stage reports.
+/// A rest between two trials.  It ends after its time, when what it waits for is there, with a
+/// request for a start, or when there is trouble, which the next stage reports.
 class Rest final : public Stage {
  public:
   /// @param what     for the person at the terminal
   /// @param seconds  [s] 0 or more
-  Rest(std::string what, double seconds, Trouble& trouble)
-      : what_(std::move(what)), seconds_(seconds), trouble_(trouble) {}
+  /// @param is_there  what it waits for; empty: its time
+  Rest(std::string what, double seconds, Trouble& trouble, std::function<bool()> is_there = {})
+      : what_(std::move(what)),
+        seconds_(seconds),
+        trouble_(trouble),
+        is_there_(std::move(is_there)) {}
 
   Actions step(Seen& seen, std::int64_t now_ns) override;
 
@@ -24,6 +29,7 @@ class Rest final : public Stage {
   std::string what_;
   double seconds_;
   Trouble& trouble_;
+  std::function<bool()> is_there_;
   std::int64_t limit_ns_ = -1;  // -1: before the first step
   std::int64_t starts_ = 0;     // requests for a start at the first step
 };

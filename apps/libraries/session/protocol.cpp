@@ -148,12 +148,17 @@ PlannedTrial identification_trial(const ProtocolOptions& options) {
   return planned;
 }
 
-PlannedTrial free_identification_trial(const ProtocolOptions& options, std::int64_t number) {
+PlannedTrial identification_again(const ProtocolOptions& options, std::int64_t number) {
   PlannedTrial planned = identification_trial(options);
   planned.trial.number = number;
+  planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
+  return planned;
+}
+
+PlannedTrial free_identification_trial(const ProtocolOptions& options, std::int64_t number) {
+  PlannedTrial planned = identification_again(options, number);
   planned.trial.phase = TrialPhase::kFree;
   planned.label = Condition::kFreeIdentification;
-  planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
   return planned;
 }
 

@@ -69,6 +69,8 @@ std::vector<PlannedTrial> plan(const ProtocolOptions& options);
 
 /// The pegged trial, number 0, which gives the session its model.
 PlannedTrial identification_trial(const ProtocolOptions& options);
+/// Its repetition, in the same motion with other phases.
+PlannedTrial identification_again(const ProtocolOptions& options, std::int64_t number);
 /// The one with the stick free, in the same motion with other phases: it gives the feedthrough to
 /// position.
 PlannedTrial free_identification_trial(const ProtocolOptions& options, std::int64_t number);

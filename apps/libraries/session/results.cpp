@@ -197,6 +197,16 @@ RateConversionCost conversion_cost(const SessionRecording& session,
   return {rms(fast_error) / rms(judged), rms(held_error) / rms(judged)};
 }
 
+// The newest model of the force at that time; nullptr: there was none that is usable.
+const stillhand_msgs::FeedthroughModel* identified_before(const SessionRecording& session,
+                                                          const Trial& trial) {
+  const stillhand_msgs::FeedthroughModel* newest = nullptr;
+  for (const stillhand_msgs::FeedthroughModel& model : session.models) {
+    if (!model.to_position() && model.from_tick() < trial.start_tick) newest = &model;
+  }
+  return newest != nullptr && newest->usable() ? newest : nullptr;
+}
+
 SensedMotion sensed_motion(const SessionRecording& session, const Trial& trial) {
   std::int64_t missing = 0;
   return {measured(
@@ -292,8 +302,9 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
     if (answers && planned.cancellation && planned.parts.empty()) {
       trial.budget = split_trial(session, planned.trial, *answers).budget;
     }
-    if (planned.moving && result.model && result.model->usable() && !result.conversion) {
-      const RateConversionCost cost = conversion_cost(session, *result.model, planned.trial);
+    const auto* model = identified_before(session, planned.trial);
+    if (planned.moving && model != nullptr && !result.conversion) {
+      const RateConversionCost cost = conversion_cost(session, *model, planned.trial);
       if (std::isfinite(cost.control_filter)) result.conversion = cost;
     }
   }

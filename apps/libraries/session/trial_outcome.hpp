@@ -23,10 +23,11 @@ struct MissCounts {
 struct TrialOutcome {
   PlannedTrial planned;
   bool completed = false;
-  bool stopped = false;                       ///< a request ended it: it is run again
-  std::string aborted;                        ///< why it was not completed, or empty
-  std::vector<Mark> marks;                    ///< events during the trial, in order of their first
-  MissCounts misses;                          ///< during the trial, all readers together
+  bool stopped = false;     ///< a request ended it: it is run again
+  std::string aborted;      ///< why it was not completed, or empty
+  std::string no_model;     ///< why an identification that counts gave none, or empty
+  std::vector<Mark> marks;  ///< events during the trial, in order of their first
+  MissCounts misses;        ///< during the trial, all readers together
   std::optional<motion::MotionReport> asked;  ///< of the platform, when it moves
 };
 

@@ -50,7 +50,14 @@ class FakeTrials final : public lab::LiveTrials {
     if (prompt.kind == PromptKind::kQuestion && passes_over) return std::nullopt;
     return prompt.steps;
   }
-  void rest(const std::string& /*what*/, double /*seconds*/) override { count(); }
+  const session::TrialOutcome& run_between(const session::PlannedTrial& planned) override {
+    return run_once(planned);
+  }
+  void rest(const std::string& /*what*/, double /*seconds*/,
+            const std::function<bool()>& /*over*/) override {
+    count();
+  }
+  void say(const std::string& /*line*/) override {}
   void note(const std::string& /*text*/) override {}
   lab::Asked asked() override { return {}; }
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }

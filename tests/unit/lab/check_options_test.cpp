@@ -64,6 +64,15 @@ TEST_F(CheckOptionsTest, ARigOfDevicesIsReadBeforeAnythingStarts) {
   EXPECT_THAT(refusal(), HasSubstr("absent.yaml"));
 }
 
+TEST_F(CheckOptionsTest, ClosingLiveRehearsesTheTrialsThatMayCome) {
+  options_.close_live = true;
+  EXPECT_THAT(refusal(), StartsWith("--close: got live without the condition C"));
+  options_.protocol.conditions = session::parse_conditions("A,C");
+  EXPECT_EQ(check_options(options_).size(), 4u);  // identification and C, each of them twice
+  options_.model = "m.json";
+  EXPECT_THAT(refusal(), StartsWith("--close live: got --model with it"));
+}
+
 TEST_F(CheckOptionsTest, ARideAndItsMotionGoTogether) {
   options_.ride = "x.csv";
   EXPECT_THAT(refusal(), AllOf(StartsWith("--ride: got x.csv"), HasSubstr("--motion ride")));

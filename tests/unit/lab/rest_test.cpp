@@ -42,6 +42,16 @@ TEST_F(RestTest, TheEndOfAProcessEndsIt) {
   EXPECT_EQ(trouble_.why(), "rig ended");
 }
 
+TEST_F(RestTest, WhatItWaitsForEndsIt) {
+  bool is_there = false;
+  Rest sut("diagnosis", 10.0, trouble_, [&] { return is_there; });
+  step(sut);
+  EXPECT_FALSE(sut.over());
+  is_there = true;
+  step(sut);
+  EXPECT_TRUE(sut.over());
+}
+
 TEST_F(RestTest, WithoutATimeItIsOverAtOnce) {
   Rest sut("rest", 0.0, trouble_);
   step(sut);

@@ -99,6 +99,22 @@ TEST(SummaryJsonTest, AMitigationStandsNextToTheLettersWithTheStudysShare) {
   EXPECT_TRUE(json_of(result)["mitigations"]["C"]["restored"].is_null());
 }
 
+TEST(SummaryJsonTest, CThatRanAgainCountsByItsNewestTrialAndCPlusByItself) {
+  session::SessionResult result = papers_session();
+  result.trials.push_back(trial(Condition::kC, 5.0, 0.4, 0.2));
+  result.trials.back().number = 5;
+  result.trials.back().models.force = 1;
+  result.trials.push_back(trial(Condition::kCPlus, 4.5, 0.45, 0.22));
+  result.trials.back().number = 7;
+  result.trials.back().models.force = 1000;
+  const auto json = json_of(result, {outcome(5, Condition::kC), outcome(7, Condition::kCPlus)});
+  EXPECT_EQ(json["conditions"]["C"]["rms_error_mm"]["mean"], 5.0);
+  EXPECT_EQ(json["conditions"]["C+"]["rms_error_mm"]["mean"], 4.5);
+  EXPECT_EQ(json["trials"][0]["model"], 1);
+  EXPECT_EQ(json["trials"][1]["condition"], "C+");
+  EXPECT_EQ(json["trials"][1]["model"], 1000);
+}
+
 TEST(SummaryJsonTest, WithoutAllThreeConditionsNothingIsRestored) {
   for (std::size_t missing = 0; missing < 3; ++missing) {
     session::SessionResult result = papers_session();

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/pause_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/libraries/report/text.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+using nlohmann::json;
+
+std::string newton(const json& level) { return report::number(level.at("rms"), 2) + " N"; }
+
+double unseen_s(const json& summary) {
+  double seconds = 0.0;
+  for (const json& record : summary.at("unseen")) seconds += record.at("seconds").get<double>();
+  return seconds;
+}
+
+// The interval of what C+ leaves less, of what C leaves; none: there are too few blocks.
+bool excludes_no_gain(const json& interval) {
+  return interval.is_null() || interval.at(0).get<double>() > 0.0;
+}
+
+std::string why_not(const json& summary) {
+  const std::string kind = summary.at("verdict").at("kind");
+  if (kind == "none") return "nothing that counts is missing in it";
+  if (const json& refused = summary.at("not_carried"); !refused.is_null()) {
+    return kind + " is not carried: " + refused.get<std::string>();
+  }
+  if (summary.at("decided_on") != "motor") return kind + " was not judged by the motor";
+  if (summary.at("kept").get<bool>()) return {};
+  const json& decision = summary.at("decision");
+  return fmt::format("C+ ({}) would leave {} where it leaves {}", kind,
+                     newton(decision.at("augmented")), newton(decision.at("linear")));
+}
+
+}  // namespace
+
+PauseVerdict pause_verdict(const std::string& text) {
+  const json summary = json::parse(text);
+  PauseVerdict out;
+  out.why_not = why_not(summary);
+  if (!out.why_not.empty()) return out;
+  const json& decision = summary.at("decision");
+  out.certain = excludes_no_gain(decision.at("less_interval95"));
+  out.found = fmt::format("{}: leaves {} in place of {}, in {:.0f} s that no fit has seen",
+                          summary.at("verdict").at("kind").get<std::string>(),
+                          newton(decision.at("augmented")), newton(decision.at("linear")),
+                          unseen_s(summary));
+  return out;
+}
+
+}  // namespace stillhand::lab

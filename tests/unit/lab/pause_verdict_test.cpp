@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/pause_verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/lab/pause_summary.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+TEST(PauseVerdictTest, CPlusThatLeavesLessIsOnOffer) {
+  const PauseVerdict sut = pause_verdict(pause_summary().dump());
+  EXPECT_EQ(sut.why_not, "");
+  EXPECT_EQ(sut.found, "dead_zone: leaves 0.81 N in place of 1.46 N, in 36 s that no fit has seen");
+  EXPECT_TRUE(sut.certain);
+}
+
+TEST(PauseVerdictTest, AnIntervalThatHoldsNoGainIsNotCertain) {
+  auto summary = pause_summary();
+  summary["decision"]["less_interval95"] = {-0.1, 0.5};
+  EXPECT_EQ(pause_verdict(summary.dump()).why_not, "");
+  EXPECT_FALSE(pause_verdict(summary.dump()).certain);
+  summary["decision"]["less_interval95"] = nullptr;  // fewer than three blocks: there is none
+  EXPECT_TRUE(pause_verdict(summary.dump()).certain);
+}
+
+TEST(PauseVerdictTest, WhatLeavesMoreIsNotOnOffer) {
+  auto summary = pause_summary();
+  summary["kept"] = false;
+  summary["decision"]["augmented"]["rms"] = 1.5;
+  EXPECT_EQ(pause_verdict(summary.dump()).why_not,
+            "C+ (dead_zone) would leave 1.50 N where it leaves 1.46 N");
+}
+
+TEST(PauseVerdictTest, NothingMissingNothingOnOffer) {
+  auto summary = pause_summary();
+  summary["verdict"]["kind"] = "none";
+  EXPECT_EQ(pause_verdict(summary.dump()).why_not, "nothing that counts is missing in it");
+}
+
+TEST(PauseVerdictTest, WhatTheCancellerRefusesIsNotOnOffer) {
+  auto summary = pause_summary();
+  summary["not_carried"] = "the canceller refuses it: unstable";
+  EXPECT_EQ(pause_verdict(summary.dump()).why_not,
+            "dead_zone is not carried: the canceller refuses it: unstable");
+}
+
+}  // namespace
+}  // namespace stillhand::lab
