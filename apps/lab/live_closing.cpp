@@ -124,8 +124,10 @@ bool LiveClosing::takes(const PauseVerdict& verdict, std::int64_t number) {
 bool LiveClosing::give_plus(std::int64_t number) {
   std::string refused;
   try {
-    refused = trials_.use(
-        control_model(folder_of(options_) / "control_model.json", options_.rig, options_.config));
+    cancellation::ControlModel plus =
+        control_model(folder_of(options_) / "control_model.json", options_.rig, options_.config);
+    plus.adapts.reset();  // neither what judged it nor C follows the hand
+    refused = trials_.use(plus);
   } catch (const std::exception& error) {
     refused = error.what();
   }

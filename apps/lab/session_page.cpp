@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/lab/output_folder.hpp"
 #include "apps/lab/summary_json.hpp"
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/provenance.hpp"
@@ -60,6 +61,25 @@ void add_budgets(const session::SessionResult& result, report::Page& page) {
     page.section("What is left");
     page.table(session::budget_table(std::string(session::name_of(trial.label)), *trial.budget));
   }
+}
+
+// Which trial ran which model, after the loop was closed in a pause.
+void add_closing(const std::vector<session::TrialOutcome>& outcomes,
+                 const session::SessionResult& result, report::Page& page) {
+  const auto identifies = [](const session::TrialOutcome& outcome) {
+    return outcome.completed && outcome.planned.label == session::Condition::kIdentification;
+  };
+  if (std::ranges::count_if(outcomes, identifies) < 2) return;
+  std::string models;
+  for (const session::TrialResult& trial : result.trials) {
+    if (!session::cancels(trial.label) || !trial.models.force) continue;
+    models += fmt::format("{}trial {} ({}) ran model {}", models.empty() ? "" : ", ", trial.number,
+                          session::name_of(trial.label), *trial.models.force);
+  }
+  page.paragraph(fmt::format(
+      "The model of C was identified again during the session: {}. {}/report.html has the "
+      "diagnosis of the repetition, if it was ready.",
+      models, kClosingFolder));
 }
 
 }  // namespace
@@ -116,6 +136,7 @@ report::Page session_page(const LabOptions& options,
   page.paragraph(meanings + "Another session gives other numbers.");
   for (const std::string& line : disturbance_lines(result)) page.paragraph("* " + line + ".");
   for (const std::string& line : model_change_lines(outcomes)) page.warning(line + ".");
+  add_closing(outcomes, result, page);
   add_budgets(result, page);
   if (!mitigated_trials(result).empty()) {
     page.section("Mitigations");

@@ -26,6 +26,7 @@ cancellation::ControlModel gain(double n_s2_m) {
   model.rate_hz = 1000.0;
   model.denominator = {1.0};
   model.inputs = {{cancellation::Channel::kAccelY, {}, {n_s2_m}}};
+  model.adapts = cancellation::kAverageHand;
   return model;
 }
 
@@ -61,6 +62,7 @@ class Trials final : public LiveTrials {
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
   std::string use(const cancellation::ControlModel& model) override {
     gains.push_back(model.inputs.at(0).numerator.at(0));
+    EXPECT_FALSE(model.adapts);  // as C, and as it was judged
     return refuses;
   }
   [[nodiscard]] bool interrupted() const override { return false; }

@@ -72,6 +72,23 @@ TEST(SessionPageTest, ATrialThatDoesNotCountIsNamedWithItsReason) {
               Not(HasSubstr("does not count")));
 }
 
+TEST(SessionPageTest, AfterASecondIdentificationEachTrialNamesItsModel) {
+  session::TrialOutcome identified;
+  identified.planned.label = Condition::kIdentification;
+  identified.completed = true;
+  session::SessionResult result;
+  result.trials = {trial(Condition::kC, 35.0), trial(Condition::kCPlus, 30.0)};
+  result.trials[0].number = 1;
+  result.trials[0].models.force = 0;
+  result.trials[1].number = 3;
+  result.trials[1].models.force = 1000;
+  const auto sut = [&](std::size_t count) {
+    return session_page(LabOptions{}, {count, identified}, result, {}).html();
+  };
+  EXPECT_THAT(sut(1), Not(HasSubstr("identified again")));
+  EXPECT_THAT(sut(2), HasSubstr("trial 1 (C) ran model 0, trial 3 (C+) ran model 1000."));
+}
+
 TEST(SessionPageTest, AConditionThatDidNotRunHasNoFigure) {
   session::SessionResult result;
   result.trials = {trial(Condition::kA, 20.0)};
