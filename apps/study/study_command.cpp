@@ -85,13 +85,11 @@ int run_calibration(const StudyRecord& record, const Arguments& arguments, bool 
 
 int explain(const StudyRecord& record, const Arguments& arguments, bool subjects_given) {
   report::StagedFolder folder(arguments.out);
-  report::require_gnuplot();
   ExplainOptions options = explain_options(record, subjects_given);
   options.means = arguments.explain_paper != kSpread;
   options.spread = arguments.explain_paper != kMeans;
   const Explanation explanation = with_progress(explain_paper, options);
   write_explanation(explanation, record.command_line, folder);
-  print_explanation(explanation);
   report::say_report(arguments.out);
   return 0;
 }

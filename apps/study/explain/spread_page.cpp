@@ -11,7 +11,6 @@ namespace stillhand::study {
 namespace {
 
 using report::Cell;
-using report::Colour;
 using report::number;
 using report::short_number;
 
@@ -143,77 +142,21 @@ report::Table signature_table(const Spread& spread) {
 report::Table people_table(const Spread& spread) {
   report::Table table;
   table.caption =
-      "People for whom the best signature is unlike the chain's, and unlike that of the cause most "
-      "alike, in four studies of five at a level of 0.05.";
-  table.header = {"cause", "from the chain", "from the cause most alike", ""};
-  table.align = std::vector(4, report::Align::kLeft);
+      "People for whom the best signature is unlike the chain's, in four studies of five at a "
+      "level of 0.05.";
+  table.header = {"cause", "from the chain"};
+  table.align = std::vector(2, report::Align::kLeft);
   for (std::size_t i = 1; i < spread.judged.size(); ++i) {
     const SpreadJudged& one = spread.judged[i];
-    const auto apart = [&](const SpreadJudged& other) {
-      return people(tells_apart(one.signatures, other.signatures));
-    };
-    table.rows.push_back({one.fit.name, apart(spread.judged.front())});
-    if (i == 1) continue;
-    const SpreadJudged& alike = spread.judged[most_alike(spread, i)];
-    table.rows.back().insert(table.rows.back().end(), {alike.fit.name, apart(alike)});
+    table.rows.push_back(
+        {one.fit.name, people(tells_apart(one.signatures, spread.judged.front().signatures))});
   }
   return table;
 }
 
 }  // namespace
 
-std::size_t most_alike(const Spread& spread, std::size_t cause) {
-  std::size_t alike = 0;
-  double most = 0.0;
-  for (std::size_t other = 2; other < spread.judged.size(); ++other) {
-    if (other == cause) continue;
-    const double needed =
-        tells_apart(spread.judged[cause].signatures, spread.judged[other].signatures).second;
-    if (needed > most) {
-      most = needed;
-      alike = other;
-    }
-  }
-  return alike;
-}
-
-report::Figure figure_spread(const Spread& spread) {
-  const std::array<Colour, 3> colours{Colour::kWarning, Colour::kConditionC, Colour::kModel};
-  report::Panel panel;
-  panel.y.label = "SD between people, simulated over the paper's";
-  for (std::size_t k = 0; k < 6; ++k) {
-    const char* const names[]{"RMS", "dwell", "f_c"};
-    panel.x.ticks.push_back(
-        {static_cast<double>(k + 1), std::string(k < 3 ? "A-B " : "B-C ") + names[k % 3]});
-  }
-  for (std::size_t i = 0; i < std::min(colours.size(), spread.judged.size()); ++i) {
-    const SpreadJudged& one = spread.judged[i];
-    report::Series series{
-        .label = one.fit.name, .kind = report::Kind::kErrorBars, .colour = colours[i]};
-    for (std::size_t k = 0; k < 6; ++k) {
-      series.x.push_back(static_cast<double>(k + 1) + 0.2 * (static_cast<double>(i) - 1.0));
-      series.y.push_back(one.fit.over_paper[k]);
-      series.y_low.push_back(one.ratio_ci95[k][0]);
-      series.y_high.push_back(one.ratio_ci95[k][1]);
-    }
-    panel.series.push_back(std::move(series));
-  }
-  panel.x.low = 0.4;
-  panel.x.high = 6.6;
-  panel.y.low = 0.0;
-  panel.reference_lines = {{.at = 1.0, .label = "paper", .colour = Colour::kTarget}};
-  return {.name = "explain_spread",
-          .caption =
-              "Spread between people with the paper's chain, with the combination that comes "
-              "nearest, and with the best single cause, on people who had no part in the "
-              "choice. Bars: 95 %, for twelve people there and ours here.",
-          .panels = {panel},
-          .columns = 1,
-          .width_px = 860,
-          .height_px = 440};
-}
-
-void add_spread(report::Page& page, const Spread& spread, const report::Drawing& drawing) {
+void add_spread(report::Page& page, const Spread& spread) {
   page.section("The second residual: how much people differ");
   page.paragraph(
       "With the paper's chain the means of C are the paper's, but the simulated people are too "
@@ -221,7 +164,6 @@ void add_spread(report::Page& page, const Spread& spread, const report::Drawing&
       "alike. Here each cause acts in addition to the chain, in every trial with a rig of its "
       "own.");
   page.table(state_table(spread));
-  page.figure(drawing);
   page.table(ranking_table(spread));
   page.section("Judged on other people", 3);
   page.table(judged_table(spread));
