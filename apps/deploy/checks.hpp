@@ -65,7 +65,7 @@ Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
 /// @param governors  text of each /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor
 Finding check_governor(const std::vector<std::string>& governors);
 
-/// The serial port of a drive or of a load cell indicator.
+/// The serial port of a drive.
 struct SerialPortState {
   std::string path;                ///< of devices.yaml
   std::string key = "drive.port";  ///< there

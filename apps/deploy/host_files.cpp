@@ -79,14 +79,11 @@ CPUSchedulingPriority={}
 
 std::optional<GeneratedFile> device_rules_of(const Inventory& inventory, const Host& host) {
   if (!runs_a_rig_of_devices(inventory, host)) return std::nullopt;
-  // Sources: mjbots/moteus, docs/platforms (the adapter's rule); odriverobotics/ODrive,
-  // tools/odrive/utils.py (the USB numbers of an ODrive).
+  // Source: mjbots/moteus, docs/platforms (the adapter's rule).
   return GeneratedFile{"devices.rules", "# " + generated_note(inventory, host) +
                                             R"(
 # An fdcanusb or mjcanfd-usb-1x: drive.port /dev/fdcanusb.
 SUBSYSTEM=="tty", ATTRS{manufacturer}=="mjbots", ATTRS{product}=="fdcanusb", GROUP="dialout", MODE="0660", SYMLINK+="fdcanusb", ENV{ID_MM_PORT_IGNORE}="1"
-# An ODrive: drive.port /dev/odrive. A modem's program that tries it would send it words.
-SUBSYSTEM=="tty", ATTRS{idVendor}=="1209", ATTRS{idProduct}=="0d3[0-9]", GROUP="dialout", MODE="0660", SYMLINK+="odrive", ENV{ID_MM_PORT_IGNORE}="1"
 # A USB serial chip hands its bytes on after 1 ms; as shipped, after 16.
 ACTION=="add|change", SUBSYSTEM=="usb-serial", DRIVER=="ftdi_sio", ATTR{latency_timer}="1"
 )"};

@@ -191,9 +191,6 @@ std::vector<Finding> check_devices(const fs::path& devices) {
     check_context(config.accelerometer, "accelerometer");
   }
   if (parts.force == device_rig::Parts::Source::kIio) check_context(config.load_cell, "load_cell");
-  if (parts.force == device_rig::Parts::Source::kIndicator) {
-    check(config.indicator.port, "indicator.port");
-  }
   return findings;
 }
 

@@ -15,8 +15,6 @@
 #include <stdexcept>
 
 #include "services/system/process/clock.hpp"
-#include "tests/emulators/moteus_emulator.hpp"
-#include "tests/emulators/odrive_emulator.hpp"
 
 namespace stillhand::emulators {
 namespace {
@@ -35,17 +33,11 @@ int listen_at(std::uint16_t port) {
   return descriptor;
 }
 
-std::unique_ptr<DriveEmulator> drive_of(const LoopOptions& options) {
-  if (options.odrive) return std::make_unique<OdriveEmulator>();
-  return std::make_unique<MoteusEmulator>(options.uart);
-}
-
 }  // namespace
 
 EmulatedLoop::EmulatedLoop(const LoopOptions& options, const rig::RigConfig& rig)
-    : made_(drive_of(options)),
-      drive_(*made_),
-      serial_(options.drive_link, options.odrive ? Answers::kLines : Answers::kFrames),
+    : drive_(options.uart),
+      serial_(options.drive_link),
       laboratory_(rig, drive_, platform_),
       socket_(listen_at(options.platform_port)) {
   for (const std::string& each : options.settings) {
@@ -54,7 +46,6 @@ EmulatedLoop::EmulatedLoop(const LoopOptions& options, const rig::RigConfig& rig
     drive_.set(each.substr(0, equals), each.substr(equals + 1));
   }
   if (!options.accelerometer.empty()) iio_.emplace(options.accelerometer, options.bridge);
-  if (!options.indicator_link.empty()) indicator_.emplace(options.indicator_link);
   drive_.begin(runtime::monotonic_ns());
 }
 
@@ -79,7 +70,6 @@ void EmulatedLoop::run(Person* person) {
     if (now_ns < due_ns) continue;
     laboratory_.step(now_ns, person);
     if (iio_) iio_->write(laboratory_.raw(), now_ns);
-    if (indicator_) indicator_->step(laboratory_.cell_force_n(), now_ns);
     if (drive_.torque_n_m() != 0.0) torque_until_ns_ = now_ns;
     if (platform_.wish(now_ns)) platform_until_ns_ = now_ns;
     worst_step_ns_ = std::max(worst_step_ns_, now_ns - stepped_ns_);
@@ -139,7 +129,7 @@ void EmulatedLoop::execute(const std::string& line, std::int64_t now_ns) {
   if (word == "mark") return;  // a fault that is made elsewhere begins now
   if (!execute_platform(word, value) && !execute_laboratory(word, value) &&
       !execute_drive(word, value, now_ns) && !execute_way(word, value) &&
-      !execute_iio(word, value) && !execute_indicator(word, value)) {
+      !execute_iio(word, value)) {
     std::fprintf(stderr, "emulated_laboratory: no order \"%s\"\n", word.c_str());
   }
 }
@@ -211,26 +201,11 @@ bool EmulatedLoop::execute_iio(const std::string& word, double value) {
   return true;
 }
 
-bool EmulatedLoop::execute_indicator(const std::string& word, double value) {
-  if (!indicator_) return false;
-  if (word == "indicator_silent") {
-    indicator_->serial().mischief.silent = value != 0.0;
-  } else if (word == "indicator_overload") {
-    indicator_->overload(value != 0.0);
-  } else if (word == "indicator_cable") {
-    value != 0.0 ? indicator_->serial().put_in() : indicator_->serial().pull_out();
-  } else {
-    return false;
-  }
-  return true;
-}
-
 bool EmulatedLoop::execute_way(const std::string& word, double value) {
   const std::map<std::string, bool*> switches{
       {"silent", &serial_.mischief.silent},       {"deaf", &serial_.mischief.deaf},
       {"garbage", &serial_.mischief.garbage},     {"damaged", &serial_.mischief.damaged},
-      {"truncated", &serial_.mischief.truncated}, {"repeated", &serial_.mischief.repeated},
-      {"mixed", &serial_.mischief.mixed},         {"lost", &serial_.mischief.lost}};
+      {"truncated", &serial_.mischief.truncated}, {"repeated", &serial_.mischief.repeated}};
   if (const auto found = switches.find(word); found != switches.end()) {
     *found->second = value != 0.0;
   } else if (word == "late") {

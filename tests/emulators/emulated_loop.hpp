@@ -4,15 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "tests/emulators/iio_side.hpp"
-#include "tests/emulators/indicator_side.hpp"
 #include "tests/emulators/laboratory.hpp"
+#include "tests/emulators/moteus_emulator.hpp"
 #include "tests/emulators/serial_side.hpp"
 
 namespace stillhand::emulators {
@@ -21,11 +20,9 @@ struct LoopOptions {
   std::filesystem::path drive_link;
   std::uint16_t platform_port = 0;
   bool uart = false;
-  bool odrive = false;                ///< the drive is an ODrive, not a moteus
   std::vector<std::string> settings;  ///< NAME=VALUE
   /// FIFOs of an IIO accelerometer and of a bridge converter; empty: neither
   std::filesystem::path accelerometer, bridge;
-  std::filesystem::path indicator_link;  ///< serial port of a load cell indicator; empty: none
 };
 
 /// Devices and physics in one thread: it answers whatever comes at once, and steps the physics each
@@ -49,18 +46,15 @@ class EmulatedLoop {
   bool execute_drive(const std::string& word, double value, std::int64_t now_ns);
   bool execute_platform(const std::string& word, double value);
   bool execute_laboratory(const std::string& word, double value);
-  bool execute_indicator(const std::string& word, double value);
   bool execute_iio(const std::string& word, double value);
   bool execute_way(const std::string& word, double value);
   void report(std::int64_t now_ns) const;
 
-  std::unique_ptr<DriveEmulator> made_;
-  DriveEmulator& drive_;
+  MoteusEmulator drive_;
   PlatformEmulator platform_;
   SerialSide serial_;
   Laboratory laboratory_;
   std::optional<IioSide> iio_;
-  std::optional<IndicatorSide> indicator_;
   int socket_ = -1;
   bool platform_silent_ = false;
   double platform_loses_ = 0.0;  ///< share of the datagrams, each way

@@ -74,16 +74,12 @@ void Person::put(rig::RigInput& input) {
   input.pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
 }
 
-Laboratory::Laboratory(const rig::RigConfig& config, DriveEmulator& drive,
+Laboratory::Laboratory(const rig::RigConfig& config, MoteusEmulator& drive,
                        PlatformEmulator& platform)
     : lever_m_(config.stick.lever_m),
       rig_(without_barrier(config)),
       drive_(drive),
       platform_(platform) {}
-
-double Laboratory::cell_force_n() const {
-  return (swapped_ ? -1.0 : 1.0) * (output_.raw.load_cell_v / kForce_v_n + pull_n_);
-}
 
 void Laboratory::step(std::int64_t now_ns, Person* person) {
   rig::RigInput input;

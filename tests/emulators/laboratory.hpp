@@ -10,7 +10,7 @@
 #include "services/core/contract/trial.hpp"
 #include "services/core/rig/rig.hpp"
 #include "services/system/process/latest_value.hpp"
-#include "tests/emulators/drive_emulator.hpp"
+#include "tests/emulators/moteus_emulator.hpp"
 #include "tests/emulators/platform_emulator.hpp"
 
 namespace stillhand::emulators {
@@ -47,7 +47,7 @@ class Person {
 /// torque of the emulated drive and the set-points of the emulated platform.
 class Laboratory {
  public:
-  Laboratory(const rig::RigConfig& config, DriveEmulator& drive, PlatformEmulator& platform);
+  Laboratory(const rig::RigConfig& config, MoteusEmulator& drive, PlatformEmulator& platform);
 
   /// One millisecond.
   void step(std::int64_t now_ns, Person* person);
@@ -68,15 +68,13 @@ class Laboratory {
   void hold_acceleration(bool held) { held_ = held; }
   /// The platform's own accelerometer gives no number.
   void lose_acceleration(bool lost) { seat_unknown_ = lost; }
-  /// Force on the load cell, pulls of a person who calibrates with it; its own zero is in it.
-  [[nodiscard]] double cell_force_n() const;
   [[nodiscard]] const rig::RawSample& raw() const { return output_.raw; }
   [[nodiscard]] const rig::RigTruth& truth() const { return output_.truth; }
 
  private:
   double lever_m_;
   rig::Rig rig_;
-  DriveEmulator& drive_;
+  MoteusEmulator& drive_;
   PlatformEmulator& platform_;
   rig::RigOutput output_{};
   double slip_rev_ = 0.0;

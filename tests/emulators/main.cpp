@@ -32,14 +32,11 @@ int run(int argc, char** argv) {
   cli.add_option("--domain", domain, "DDS domain of the session whose person holds the stick");
   cli.add_option("--seed", seed, "of the sensors' noise");
   cli.add_flag("--uart", options.uart, "the drive's own UART: lines with checksums");
-  cli.add_flag("--odrive", options.odrive, "the drive is axis 0 of an ODrive");
   cli.add_option("--set", options.settings, "NAME=VALUE of the drive's settings")
       ->allow_extra_args(false);
   cli.add_option("--accelerometer", options.accelerometer,
                  "FIFO of an IIO accelerometer's samples");
   cli.add_option("--bridge", options.bridge, "FIFO of an IIO bridge converter's samples");
-  cli.add_option("--indicator-link", options.indicator_link,
-                 "name of a load cell indicator's serial port");
   cli.add_flag("--no-real-time", ordinary, "do not ask for real-time priority");
   try {
     cli.parse(argc, argv);

@@ -8,34 +8,63 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/emulators/drive_emulator.hpp"
-
 namespace stillhand::emulators {
+
+/// What a drive measures.
+struct DriveSenses {
+  double position_rev = 0.0;
+  double velocity_rev_s = 0.0;
+  double analog1 = 0.5;
+  double analog2 = 0.5;
+};
+
+/// What the drive saw of the host, for tests.
+struct DriveRecord {
+  std::uint64_t commands = 0;          ///< torque commands of a drive that follows or was asked to
+  std::uint64_t stops = 0;             ///< driver off
+  std::uint64_t queries = 0;           ///< questions without a command
+  std::uint64_t other_modes = 0;       ///< any other mode or state; none is right
+  std::uint64_t without_watchdog = 0;  ///< commands that would count for ever
+  std::uint64_t with_gains = 0;        ///< commands that leave a gain or a position
+  std::uint64_t without_bound = 0;     ///< commands without a largest torque
+  std::uint64_t timeouts = 0;
+  double most_torque_n_m = 0.0;
+  double first_torque_n_m = 0.0;  ///< largest of a first command after a stop
+  double torque_after_ms = 0.0;   ///< longest time from a command to the end of its torque
+};
 
 /// A moteus drive behind an fdcanusb (or its own UART), by the maker's documents alone: it shares
 /// no code with the driver.  The clock is the caller's.  Source: mjbots/moteus,
 /// docs/protocol/can.md, registers.md, docs/integration/uart.md, docs/reference/configuration.md.
-class MoteusEmulator final : public DriveEmulator {
+class MoteusEmulator {
  public:
   /// @param uart  lines end with a checksum, as those of a drive's UART
   explicit MoteusEmulator(bool uart);
 
-  std::string take(std::string_view bytes, std::int64_t now_ns) override;
-  void tick(std::int64_t now_ns) override;
-  void sense(const DriveSenses& senses) override { senses_ = senses; }
-  [[nodiscard]] double torque_n_m() const override { return torque_n_m_; }
-  [[nodiscard]] bool follows() const override { return mode_ == 10; }
-  [[nodiscard]] int mode() const override { return mode_; }
-  [[nodiscard]] const DriveRecord& record() const override { return record_; }
+  /// Bytes of the host; returns the answer.
+  std::string take(std::string_view bytes, std::int64_t now_ns);
+  /// The drive's own clock goes on: watchdog and torque.
+  void tick(std::int64_t now_ns);
+  void sense(const DriveSenses& senses) { senses_ = senses; }
+  /// On the stick's shaft.
+  [[nodiscard]] double torque_n_m() const { return torque_n_m_; }
+  /// Its driver is on and follows commands.
+  [[nodiscard]] bool follows() const { return mode_ == 10; }
+  [[nodiscard]] int mode() const { return mode_; }
+  [[nodiscard]] const DriveRecord& record() const { return record_; }
 
-  void begin(std::int64_t now_ns) override { began_ns_ = now_ns; }
-  void reboot(std::int64_t now_ns) override;
-  void fault(int code) override;
-  void set(const std::string& name, const std::string& value) override { settings_[name] = value; }
+  /// Its counter is 0 now.
+  void begin(std::int64_t now_ns) { began_ns_ = now_ns; }
+  /// Off and on again: settings from its memory, counter from 0.
+  void reboot(std::int64_t now_ns);
+  void fault(int code);
+  void set(const std::string& name, const std::string& value) { settings_[name] = value; }
   /// Reading the register is an error.
-  void forget(std::uint32_t address) override { unknown_ = address; }
-  void be(std::uint32_t serial) override { serial_ = serial; }
-  void lose_position(bool lost) override { lost_ = lost; }
+  void forget(std::uint32_t address) { unknown_ = address; }
+  /// Another drive in its place.
+  void be(std::uint32_t serial) { serial_ = serial; }
+  /// The encoder gives no position.
+  void lose_position(bool lost) { lost_ = lost; }
 
  private:
   struct Command;

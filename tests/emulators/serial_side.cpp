@@ -6,19 +6,14 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 namespace stillhand::emulators {
 
-SerialSide::SerialSide(std::filesystem::path link, Answers answers)
-    : link_(std::move(link)), answers_(answers) {
-  put_in();
-}
+SerialSide::SerialSide(std::filesystem::path link) : link_(std::move(link)) { put_in(); }
 
 SerialSide::~SerialSide() {
   pull_out();
@@ -72,7 +67,6 @@ std::string SerialSide::spoilt(std::string answer) {
   if (mischief.garbage) {
     for (char& c : answer) c = static_cast<char>(next() >> 24);
   }
-  if (answers_ == Answers::kLines) answer = spoilt_lines(answer);
   constexpr std::string_view kReply = "rcv 100 ";
   constexpr std::size_t kDigit = kReply.size() + 4;  // of the mode
   for (std::size_t at = answer.find(kReply); mischief.damaged && at != std::string::npos;
@@ -86,25 +80,6 @@ std::string SerialSide::spoilt(std::string answer) {
   if (mischief.repeated) return last_.empty() ? answer : last_;
   last_ = answer;
   return answer;
-}
-
-// Another line or pair of lines each time, so that every one has its turn.
-std::string SerialSide::spoilt_lines(const std::string& answer) {
-  std::vector<std::string> lines;
-  for (std::size_t at = 0, end = 0; at < answer.size(); at = end) {
-    end = std::min(answer.find('\n', at), answer.size() - 1) + 1;
-    lines.push_back(answer.substr(at, end - at));
-  }
-  if (lines.size() < 2) return answer;
-  const std::size_t place = turn_++ % (lines.size() - 1);
-  if (mischief.mixed) std::swap(lines[place], lines[place + 1]);
-  if (mischief.lost) lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(place));
-  if (mischief.damaged) lines[place].front() = lines[place].front() == '0' ? '1' : '0';
-  if (mischief.truncated) lines.resize(place);
-  std::string spoilt;
-  for (const std::string& each : lines) spoilt += each;
-  if (mischief.truncated) spoilt.resize(spoilt.size() / 2);
-  return spoilt;
 }
 
 void SerialSide::write(const std::string& answer, std::int64_t now_ns) {

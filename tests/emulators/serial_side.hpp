@@ -16,21 +16,13 @@ struct Mischief {
   bool damaged = false;    ///< one digit of each answer is another
   bool truncated = false;  ///< the second half of each answer is missing
   bool repeated = false;   ///< the same answer again and again
-  bool mixed = false;      ///< two lines of each answer change places (Answers::kLines)
-  bool lost = false;       ///< a line of each answer is missing (Answers::kLines)
   double late_ms = 0.0;
-};
-
-/// What a drive's answers are made of.
-enum class Answers {
-  kFrames,  ///< a frame in each line, "rcv 100 ..."
-  kLines    ///< a value in each line
 };
 
 /// The drive's end of a serial cable: a pseudo-terminal under a name that stays.
 class SerialSide {
  public:
-  explicit SerialSide(std::filesystem::path link, Answers answers = Answers::kFrames);
+  explicit SerialSide(std::filesystem::path link);
   ~SerialSide();
   SerialSide(const SerialSide&) = delete;
   SerialSide& operator=(const SerialSide&) = delete;
@@ -52,11 +44,8 @@ class SerialSide {
   };
   void send(const std::string& text);
   std::string spoilt(std::string answer);
-  std::string spoilt_lines(const std::string& answer);
 
   std::filesystem::path link_;
-  Answers answers_;
-  std::size_t turn_ = 0;  ///< which line is next
   int master_ = -1;
   int slave_ = -1;  ///< held open: a terminal that nobody has open reads as an error
   std::deque<Held> held_;

@@ -148,12 +148,6 @@ FAULTS = {
     "platform_dropped": Fault("UDP: every datagram is lost", "platform_loses", 1, quick=True, said="the platform is silent"),
     "platform_silent": Fault("UDP: answers are lost", "platform_silent", 1, said="the platform is silent"),
     "platform_fault": Fault("the platform reports a fault", "platform_fault", 2, said="the platform reports fault 0x2"),
-    "indicator_silent": Fault("indicator: no lines", "indicator_silent", 1, indicator=True, more_ms=20, quick=True,
-                              said="the load cell is silent"),
-    "indicator_overload": Fault("indicator: overload", "indicator_overload", 1, indicator=True, more_ms=20,
-                                said="the load cell is silent, or at its end"),
-    "indicator_cable": Fault("indicator: cable out (terminal closed)", "indicator_cable", 0, indicator=True, more_ms=20,
-                             said="the load cell is silent"),
     "iio_starved": Fault("IIO: FIFO starved, iiod alive", "iio_starved", 1, iio=True, more_ms=20, quick=True,
                          said="the (load cell|accelerometer) is silent, or at its end"),
     "iio_saturated": Fault("IIO: the accelerometer's converter at its end", "iio_saturated", 1, iio=True, more_ms=20,
@@ -163,36 +157,6 @@ FAULTS = {
     "iiod_stands": Fault("IIO: iiod stands still (SIGSTOP)", hurt=lambda bench: bench.iio.stand_still, iio=True, more_ms=20,
                          said="the (load cell|accelerometer) is silent, or at its end"),
 }
-
-# The same of an ODrive, whose lines, watchdog and error words are others. Acceleration and force come from IIO devices.
-ODRIVE = {
-    "rig_killed": Fault("the rig's process is killed", hurt=kill("device_rig"), drive_alone=True, quick=True,
-                        said="rig.* ended: signal 9"),
-    "rig_stopped": Fault("the rig's process is stopped", hurt=freeze("device_rig"), drive_alone=True,
-                         said="life sign|the drive is silent"),
-    "cable_out": Fault("cable out (terminal closed)", "cable", 0, said=SILENT + "|the drive was away"),
-    "silent": Fault("silent, port open", "silent", 1, said=SILENT),
-    "deaf": Fault("deaf", "deaf", 1, said=SILENT),
-    "late_5_ms": Fault("answers 5 ms late", "late", 5, said=None),
-    "late_50_ms": Fault("answers 50 ms late", "late", 50, said=SILENT),
-    "repeated": Fault("the same answer again and again", "repeated", 1, said=SILENT),
-    "garbage": Fault("garbage", "garbage", 1, said=SILENT),
-    "wrong_checksum": Fault("wrong checksum", "damaged", 1, said=SILENT),
-    "truncated": Fault("answers cut", "truncated", 1, said=SILENT),
-    "mixed": Fault("two lines of each answer change places", "mixed", 1, quick=True,
-                   said=SILENT + "|the drive was away"),
-    "lost": Fault("a line of each answer is missing", "lost", 1, said=SILENT),
-    "reboot": Fault("the drive starts again", "reboot", said="the drive was away or started again"),
-    "axis_error": Fault("an error of the axis (0x40000)", "fault", 0x40000, quick=True,
-                        said="the drive reports 0x40000 in axis0.error"),
-    "no_position": Fault("the encoder does not respond", "nan", 1, said="the drive reports 0x|the drive went off by itself"),
-    "encoder_jump": Fault("the encoder jumps by a quarter turn", "slip", 0.25, said="the angle of the drive jumped"),
-}
-for _name, _fault in ODRIVE.items():
-    _fault.title, _fault.iio, _fault.keywords = "ODrive: " + _fault.title, True, {"odrive": True}
-    # Of the others the session sees a drive that is silent, as it does of a moteus.
-    _fault.session = _name in ("rig_killed", "cable_out", "mixed", "reboot", "axis_error", "encoder_jump")
-    FAULTS["odrive_" + _name] = _fault
 
 
 class Bench:
@@ -298,8 +262,7 @@ def ended_by(seen, fault):
         return "the drive's watchdog"
     if seen["torque_after_fault_ms"] == 0.0:
         return "the drive itself"
-    off = 1 if "odrive" in fault.keywords else 0
-    return "the host's ramp" if seen["follows"] else "a stop of the host" if seen["mode"] == off else f"mode {seen['mode']}"
+    return "the host's ramp" if seen["follows"] else "a stop of the host" if seen["mode"] == 0 else f"mode {seen['mode']}"
 
 
 def rules(seen):

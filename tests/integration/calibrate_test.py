@@ -119,17 +119,6 @@ class CalibrateTest(LabTestCase):
         self.assertRegex(line, r'got a calibration of "drive, serial \w+-\w+-001d003a, AUX1", want one of '
                                r'"drive, serial \w+-\w+-0000004d, AUX1"')
 
-    def test_a_load_cell_indicators_gain_and_zero_are_found(self):
-        self.laboratory.close()
-        self.laboratory = EmulatedLaboratory(self.config, indicator=True)
-        self.addCleanup(self.laboratory.close)
-        (self.config / "sensing.yaml").write_text("load_cell_sensitivity_v_n: 0.12\n")
-        status, said, errors = self.calibrate("force", "pull", [0, 5, 10, -5, -10, 0])
-        self.assertEqual((status, errors), (0, ""), said)
-        self.assertAlmostEqual(self.settings("sensing.yaml")["load_cell_sensitivity_v_n"], 0.1, delta=0.001)
-        self.assertIn(f"indicator at {self.folder / 'indicator'}, serial unknown",
-                      self.settings("calibration.yaml")["force"]["device"])
-
     def test_what_is_wrong_is_said_and_nothing_is_written(self):
         before = (self.config / "sensing.yaml").read_text()
         for name, quantities, words, why in (

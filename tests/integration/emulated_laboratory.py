@@ -37,34 +37,23 @@ adc_range_v: 20
 """
 
 
-# The drive's accelerometer, and a load cell whose indicator goes out with 0.1 V/N.
-SENSING_INDICATOR = SENSING.replace("load_cell_sensitivity_v_n: 0.02", "load_cell_sensitivity_v_n: 0.1").replace(
-    "load_cell_offset_v: 1.651", "load_cell_offset_v: 0.005").replace("adc_range_v: 3.3", "adc_range_v: 10")
-
-
 def free_port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
         one.bind(("127.0.0.1", 0))
         return one.getsockname()[1]
 
 
-def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, odrive=False, indicator=None, **signals):
-    """Settings in which every signal is a device's, but those that are given. `iio`: uri of an IIO context;
-    `indicator`: serial port of a load cell indicator."""
-    if indicator:
-        signals = {"force": "indicator"} | signals
+def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, **signals):
+    """Settings in which every signal is a device's, but those that are given. `iio`: uri of an IIO context."""
     if iio:
         signals = {"acceleration": "iio", "force": "iio"} | signals
     parts = {"acceleration": "drive", "force": "drive", "angle": "drive", "motor": "drive", "platform": "plain_udp"}
     lines = ["signals:"] + [f"  {name}: {part}" for name, part in (parts | signals).items()]
     lines += ["drive:", f"  port: {link}", f"  watchdog_s: {WATCHDOG_MS / 1000}", f"  max_age_ticks: {MAX_AGE_MS}",
               f"  checksum: {'true' if uart else 'false'}"]
-    # What 921600 baud carry: services/devices/device_rig/DEVICES.md, "The drive's settings".
-    lines += ["  kind: odrive", "  period_ticks: 3"] if odrive else []
     lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}", f"  valid_ms: {MAX_AGE_MS}"]
     for group in ("accelerometer", "load_cell") if iio else ():
         lines += [f"{group}:", f"  uri: {iio}", f"  max_age_ticks: {MAX_AGE_MS}"]
-    lines += ["indicator:", f"  port: {indicator}", f"  max_age_ticks: {MAX_AGE_MS}"] if indicator else []
     # The amplifiers are known; a test that calibrates asks for it.
     lines += ["calibration:", f"  max_age_days: {max_age_days}"]
     return "\n".join(lines) + "\n"
@@ -73,21 +62,17 @@ def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, odrive=False,
 class EmulatedLaboratory:
     """The emulator's process. `config` is a settings folder, which gets the devices' settings. `iio`: an IioContext."""
 
-    def __init__(self, config, domain=None, uart=False, settings=(), iio=None, odrive=False, indicator=False, **signals):
+    def __init__(self, config, domain=None, uart=False, settings=(), iio=None, **signals):
         self.config = pathlib.Path(config)
         if not self.config.is_dir():
             shutil.copytree(SOURCE / "deploy" / "config", self.config)
         link = self.config.parent / "drive"
         port = free_port()
-        cell = self.config.parent / "indicator" if indicator else None
-        (self.config / "devices.yaml").write_text(
-            devices_yaml(link, port, uart, iio and iio.uri, odrive=odrive, indicator=cell, **signals))
-        (self.config / "sensing.yaml").write_text(SENSING_IIO if iio else SENSING_INDICATOR if indicator else SENSING)
+        (self.config / "devices.yaml").write_text(devices_yaml(link, port, uart, iio and iio.uri, **signals))
+        (self.config / "sensing.yaml").write_text(SENSING_IIO if iio else SENSING)
         words = [str(PROGRAM), "--drive-link", str(link), "--platform-port", str(port), "--config", str(self.config)]
         words += ["--domain", str(domain), "--profiles", str(PROFILES)] if domain is not None else []
         words += ["--uart"] if uart else []
-        words += ["--odrive", "--set", f"axis0.config.watchdog_timeout={WATCHDOG_MS / 1000}"] if odrive else []
-        words += ["--indicator-link", str(cell)] if indicator else []
         words += ["--accelerometer", str(iio.fifos["accelerometer"]), "--bridge", str(iio.fifos["bridge"])] if iio else []
         for each in settings:
             words += ["--set", each]

@@ -54,7 +54,6 @@ Arming::Output Arming::fail(const Input& input, Reason reason) noexcept {
   stage_ = Stage::kFaulted;
   reason_ = reason;
   fault_ = input.mode == DriveMode::kFault ? input.fault : 0;
-  fault_word_ = input.fault_word;
   blocked_trial_ = input.trial;
   return {stage_, Order::kStop, reason_, true, false};
 }

@@ -41,7 +41,6 @@ class Arming {
     bool jumped = false;               ///< the angle jumped
     DriveMode mode = DriveMode::kOff;  ///< of the newest reply
     int fault = 0;                     ///< same
-    const char* fault_word = nullptr;  ///< same
     bool wanted = false;     ///< a trial with a free stick, interlock closed, power stage on
     bool force_zero = true;  ///< the force after all limits is exactly 0
     std::int64_t trial = -1;
@@ -62,7 +61,6 @@ class Arming {
   /// Fault code of the drive when it was faulted; 0: none.
   [[nodiscard]] int fault() const noexcept { return fault_; }
   /// Where the bits of that code are explained; null: it is a number.
-  [[nodiscard]] const char* fault_word() const noexcept { return fault_word_; }
 
  private:
   /// Until the drive says that it follows, and that it is off [ticks].
@@ -77,7 +75,6 @@ class Arming {
   Stage stage_ = Stage::kAbsent;
   Reason reason_ = Reason::kNone;
   int fault_ = 0;
-  const char* fault_word_ = nullptr;
   std::int64_t blocked_trial_ = -2;
   std::int64_t since_ticks_ = 0;  ///< in mode-changing states
   bool confirmed_ = false;        ///< the drive has said that it follows

@@ -21,27 +21,20 @@ struct SignalsConfig {
     visit("acceleration", self.acceleration, Range{1.0, 20.0},
           "lateral acceleration: simulated, drive (an analogue input of it), platform or iio");
     visit("force", self.force, Range{1.0, 20.0},
-          "force of the hand on the stick: simulated, drive (an analogue input of it), iio or "
-          "indicator");
-    visit("angle", self.angle, Range{1.0, 30.0},
-          "angle of the stick: simulated, drive or demonstration_joystick");
-    visit(
-        "motor", self.motor, Range{1.0, 30.0},
-        "the stick's motor: simulated, drive, demonstration_joystick, or off (a drive whose power "
-        "stage stays off)");
+          "force of the hand on the stick: simulated, drive (an analogue input of it) or iio");
+    visit("angle", self.angle, Range{1.0, 20.0}, "angle of the stick: simulated or drive");
+    visit("motor", self.motor, Range{1.0, 20.0},
+          "the stick's motor: simulated, drive, or off (a drive whose power stage stays off)");
     visit("platform", self.platform, Range{1.0, 20.0},
           "motion platform: simulated, plain_udp or moog_udp");
   }
 };
 
-/// The servo drive of the stick: a moteus behind an fdcanusb or a UART, or an axis of an ODrive.
+/// The servo drive of the stick: a moteus behind an fdcanusb, a UART or a CAN interface.
 struct DriveConfig {
   std::string kind = "moteus";
   std::string port = "/dev/fdcanusb";
   std::int64_t id = 1;
-  std::int64_t axis = 0;
-  double ratio = 1.0;
-  double gain = 0.5;
   bool checksum = false;
   std::int64_t period_ticks = 1;
   double watchdog_s = 0.02;
@@ -59,19 +52,12 @@ struct DriveConfig {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("kind", self.kind, Range{1.0, 20.0},
-          "what it is: moteus (serial port), moteus_can (a CAN interface of the kernel), odrive or "
-          "joystick (a demonstration)");
+          "what it is: moteus (serial port) or moteus_can (a CAN interface of the kernel)");
     visit("port", self.port, Range{1.0, 200.0},
-          "serial port of the adapter or of the drive's UART, the CAN interface (can0), or the "
-          "joystick's event device");
+          "serial port of the adapter or of the drive's UART, or the CAN interface (can0)");
     visit("id", self.id, Range{1.0, 127.0}, "[-] number of a moteus on its bus");
-    visit("axis", self.axis, Range{0.0, 1.0}, "[-] axis of an ODrive");
-    visit("ratio", self.ratio, Range{0.1, 200.0},
-          "[rev/rev] turns of an ODrive's motor in a turn of the stick; a moteus knows its own");
-    visit("gain", self.gain, Range{0.0, 1.0}, "[-] share of a joystick's strength");
     visit("checksum", self.checksum, Range{0.0, 1.0},
-          "every line has a checksum; a moteus's UART always answers with one, an ODrive always "
-          "gets and gives one");
+          "every line has a checksum; a moteus's UART always answers with one");
     visit("period_ticks", self.period_ticks, Range{1.0, 10.0},
           "[ticks] one exchange each so many ticks; as fast as the transport carries");
     visit("watchdog_s", self.watchdog_s, Range{0.005, 0.1},
@@ -163,26 +149,6 @@ struct AccelerometerConfig : IioConfig {
   }
 };
 
-/// A load cell indicator that streams lines of text to a serial port.
-struct IndicatorConfig {
-  std::string port = "/dev/indicator";
-  std::int64_t baud = 115200;
-  double rate_hz = 500.0;
-  std::int64_t sign = 1;
-  std::int64_t max_age_ticks = 10;
-
-  template <typename Visitor, typename Self>
-  static void fields(Visitor&& visit, Self& self) {
-    visit("port", self.port, Range{1.0, 200.0}, "serial port of the indicator");
-    visit("baud", self.baud, Range{9600.0, 921600.0},
-          "[Bd] its speed: a usual one; 500 lines of 18 characters a second take 90 kBd");
-    visit("rate_hz", self.rate_hz, Range{200.0, 2000.0}, "[Hz] lines a second that it sends");
-    visit("sign", self.sign, Range{-1.0, 1.0}, "[-] 1: positive is to the right; -1: to the left");
-    visit("max_age_ticks", self.max_age_ticks, Range{2.0, 100.0},
-          "[ticks] oldest line that counts");
-  }
-};
-
 /// What a session asks of the calibration of its devices.
 struct CalibrationRule {
   std::int64_t max_age_days = 90;
@@ -205,7 +171,6 @@ struct DevicesConfig {
   PlatformLinkConfig platform;
   AccelerometerConfig accelerometer{{.device = "accelerometer", .channel = "accel_y"}, ""};
   IioConfig load_cell{.device = "bridge", .channel = "voltage0"};
-  IndicatorConfig indicator;
   CalibrationRule calibration;
 
   template <typename Visitor, typename Self>
@@ -215,7 +180,6 @@ struct DevicesConfig {
     visit.group("platform", self.platform);
     visit.group("accelerometer", self.accelerometer);
     visit.group("load_cell", self.load_cell);
-    visit.group("indicator", self.indicator);
     visit.group("calibration", self.calibration);
   }
 };

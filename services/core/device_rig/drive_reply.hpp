@@ -20,8 +20,7 @@ enum class DriveMode : std::uint8_t {
 /// stick's shaft.
 struct DriveReply {
   DriveMode mode = DriveMode::kOff;
-  int fault = 0;                     ///< number or bits of the fault
-  const char* fault_word = nullptr;  ///< where the bits of the fault are explained; null: a number
+  int fault = 0;  ///< its number
   double position_rev = kNone;
   double velocity_rev_s = kNone;
   double torque_n_m = kNone;  ///< measured

@@ -3,13 +3,12 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <string_view>
 
 namespace stillhand::device_rig {
 
 /// Bytes of a serial port to lines, without allocation.  A line that is too long is dropped up to
-/// its end and counted.
+/// its end.
 class LineSplitter {
  public:
   /// Calls `on_line(std::string_view)` for each line that the bytes complete.
@@ -23,18 +22,15 @@ class LineSplitter {
       } else if (size_ < line_.size()) {
         line_[size_++] = c;
       } else {
-        if (!overrun_) ++dropped_;
         overrun_ = true;
       }
     }
   }
-  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:
   std::array<char, 256> line_{};
   std::size_t size_ = 0;
   bool overrun_ = false;
-  std::uint64_t dropped_ = 0;
 };
 
 }  // namespace stillhand::device_rig

@@ -22,36 +22,6 @@ Value chosen(const char* setting, const std::string& word,
   throw ConfigError("devices." + std::string(setting), word, "one of " + list);
 }
 
-// Its own word names a demonstration wherever the parts are named: screen, page, recording,
-// results.
-constexpr std::string_view kJoystickPart = "demonstration_joystick";
-
-void check_joystick(const Parts& parts, const SignalsConfig& signals) {
-  const bool joystick = parts.drive == Parts::Drive::kJoystick;
-  for (const auto& [name, word] : {std::pair{"angle", signals.angle}, {"motor", signals.motor}}) {
-    if (joystick && word == "drive") {
-      throw ConfigError("devices.signals." + std::string(name), "drive, which is a joystick",
-                        std::string(kJoystickPart));
-    }
-    if (!joystick && word == kJoystickPart) {
-      throw ConfigError("devices.drive.kind",
-                        "no joystick, which signals." + std::string(name) + " names", "joystick");
-    }
-  }
-}
-
-// An ODrive's ASCII protocol reads no analogue input, and a joystick has none.
-void check_inputs(const Parts& parts) {
-  if (parts.drive != Parts::Drive::kOdrive && parts.drive != Parts::Drive::kJoystick) return;
-  const char* const signal = parts.force == Parts::Source::kDrive          ? "force"
-                             : parts.acceleration == Parts::Source::kDrive ? "acceleration"
-                                                                           : nullptr;
-  if (signal == nullptr) return;
-  throw ConfigError("devices.signals." + std::string(signal),
-                    "drive, which is an ODrive or a joystick",
-                    "iio: neither has an analogue input that can be read");
-}
-
 void check_sign(const char* name, std::int64_t sign) {
   if (sign == 0) throw ConfigError("devices." + std::string(name), "0", "1 or -1");
 }
@@ -61,7 +31,6 @@ void check_signs(const DevicesConfig& config) {
   check_sign("drive.angle_sign", config.drive.angle_sign);
   check_sign("accelerometer.sign", config.accelerometer.sign);
   check_sign("load_cell.sign", config.load_cell.sign);
-  check_sign("indicator.sign", config.indicator.sign);
   if (!config.accelerometer.mount.empty()) {
     const Mount mount("devices.accelerometer.mount", config.accelerometer.mount);
     if (config.accelerometer.sign != 1) {
@@ -101,9 +70,7 @@ void check_mixture(const Parts& parts, const DevicesConfig& config) {
 Parts::Drive drive_of(const DriveConfig& config) {
   using Drive = Parts::Drive;
   constexpr std::array kDrives{std::pair{std::string_view("moteus"), Drive::kMoteus},
-                               std::pair{std::string_view("moteus_can"), Drive::kMoteusCan},
-                               std::pair{std::string_view("odrive"), Drive::kOdrive},
-                               std::pair{std::string_view("joystick"), Drive::kJoystick}};
+                               std::pair{std::string_view("moteus_can"), Drive::kMoteusCan}};
   return chosen("drive.kind", config.kind, kDrives);
 }
 
@@ -112,19 +79,16 @@ Parts parts_of(const DevicesConfig& config) {
   using Motor = Parts::Motor;
   using Platform = Parts::Platform;
   constexpr std::array kStick{std::pair{std::string_view("simulated"), Source::kSimulated},
-                              std::pair{std::string_view("drive"), Source::kDrive},
-                              std::pair{kJoystickPart, Source::kDrive}};
+                              std::pair{std::string_view("drive"), Source::kDrive}};
   constexpr std::array kForces{std::pair{std::string_view("simulated"), Source::kSimulated},
                                std::pair{std::string_view("drive"), Source::kDrive},
-                               std::pair{std::string_view("iio"), Source::kIio},
-                               std::pair{std::string_view("indicator"), Source::kIndicator}};
+                               std::pair{std::string_view("iio"), Source::kIio}};
   constexpr std::array kAccelerometers{std::pair{std::string_view("simulated"), Source::kSimulated},
                                        std::pair{std::string_view("drive"), Source::kDrive},
                                        std::pair{std::string_view("platform"), Source::kPlatform},
                                        std::pair{std::string_view("iio"), Source::kIio}};
   constexpr std::array kMotors{std::pair{std::string_view("simulated"), Motor::kSimulated},
                                std::pair{std::string_view("drive"), Motor::kDrive},
-                               std::pair{kJoystickPart, Motor::kDrive},
                                std::pair{std::string_view("off"), Motor::kOff}};
   constexpr std::array kPlatforms{std::pair{std::string_view("simulated"), Platform::kSimulated},
                                   std::pair{std::string_view("plain_udp"), Platform::kPlain},
@@ -138,8 +102,6 @@ Parts parts_of(const DevicesConfig& config) {
   parts.motor = chosen("signals.motor", signals.motor, kMotors);
   parts.platform = chosen("signals.platform", signals.platform, kPlatforms);
   parts.drive = drive_of(config.drive);
-  check_inputs(parts);
-  check_joystick(parts, signals);
   check_signs(config);
   check_mixture(parts, config);
   return parts;

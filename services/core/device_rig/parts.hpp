@@ -12,10 +12,10 @@ namespace stillhand::device_rig {
 /// Which parts of the rig are devices.  Made of the settings once; a word that is no part is a
 /// ConfigError.
 struct Parts {
-  enum class Source : unsigned char { kSimulated, kDrive, kPlatform, kIio, kIndicator };
+  enum class Source : unsigned char { kSimulated, kDrive, kPlatform, kIio };
   enum class Motor : unsigned char { kSimulated, kDrive, kOff };
   enum class Platform : unsigned char { kSimulated, kPlain, kMoog };
-  enum class Drive : unsigned char { kMoteus, kMoteusCan, kOdrive, kJoystick };
+  enum class Drive : unsigned char { kMoteus, kMoteusCan };
 
   Source acceleration, force, angle;
   Motor motor;

@@ -86,9 +86,6 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
                                        kVoltPerMillivolt);
     });
   }
-  if (parts_.force == Parts::Source::kIndicator) {
-    indicator_ = std::make_unique<IndicatorLink>(devices.indicator);
-  }
   refuse_unserved();
 }
 
@@ -139,9 +136,6 @@ std::string DevicePlant::device_of(CalibratedSignal signal) const {
       return "IIO " + config.device + ", serial " + link.serial() + ", " + input + ", sign " +
              std::to_string(config.sign);
     }
-    case Parts::Source::kIndicator:
-      return "indicator at " + devices_.indicator.port + ", serial unknown, sign " +
-             std::to_string(devices_.indicator.sign);
   }
   return {};
 }
@@ -155,9 +149,8 @@ std::string platform_device(const DevicesConfig& devices) {
 std::string DevicePlant::pushing_devices() const {
   if (parts_.motor != Parts::Motor::kDrive) return {};
   std::array<char, 96> own{};
-  std::snprintf(own.data(), own.size(), ", torque sign %d, ratio %.9g, lever %.9g m",
-                static_cast<int>(devices_.drive.torque_sign), devices_.drive.ratio,
-                rig_config_.stick.lever_m);
+  std::snprintf(own.data(), own.size(), ", torque sign %d, lever %.9g m",
+                static_cast<int>(devices_.drive.torque_sign), rig_config_.stick.lever_m);
   std::string all = "drive, serial " + drive_->serial() + own.data();
   for (const CalibratedSignal signal : kCalibratedSignals) {
     const std::string device = device_of(signal);
@@ -222,16 +215,6 @@ double DevicePlant::iio_value(IioLink& link, const IioConfig& config) noexcept {
   return young ? static_cast<double>(config.sign) * newest.values[0] : kUnknown;
 }
 
-double DevicePlant::indicator_value() noexcept {
-  const IndicatorSample& newest = indicator_->newest();
-  const bool young =
-      is_young(newest.count, newest.at_ns, now_ns_, devices_.indicator.max_age_ticks);
-  // Sensing's range is 20 V at most: newtons one to one would end below a session's forces.
-  constexpr double kVoltPerNewton = 0.1;
-  return young ? kVoltPerNewton * static_cast<double>(devices_.indicator.sign) * newest.force_n
-               : kUnknown;
-}
-
 void DevicePlant::take_accelerometer() noexcept {
   accel_y_m_s2_ = iio_value(*accelerometer_, devices_.accelerometer);
   if (!mount_) return;
@@ -245,7 +228,6 @@ void DevicePlant::take_accelerometer() noexcept {
 void DevicePlant::take_iio() noexcept {
   if (accelerometer_) take_accelerometer();
   if (load_cell_) load_cell_v_ = iio_value(*load_cell_, devices_.load_cell);
-  if (indicator_) load_cell_v_ = indicator_value();
   const bool unknown =
       missing(parts_.acceleration, accel_y_m_s2_) || missing(parts_.force, load_cell_v_);
   unknown_ticks_ = unknown ? unknown_ticks_ + 1 : 0;
@@ -358,7 +340,7 @@ void DevicePlant::put_iio(rig::RigOutput& output) const noexcept {
     output.raw.accel_y_v = accel_y_m_s2_;
     output.raw.accel_z_v = accel_z_m_s2_;
   }
-  if (load_cell_ || indicator_) output.raw.load_cell_v = load_cell_v_;
+  if (load_cell_) output.raw.load_cell_v = load_cell_v_;
   if (unknown_ticks_ > 0) output.flags |= kInputStale;
 }
 
@@ -375,7 +357,6 @@ void DevicePlant::drive_motor(const rig::RigInput& input, rig::RigOutput& output
        .jumped = jumped_,
        .mode = stick_.reply.mode,
        .fault = stick_.reply.fault,
-       .fault_word = stick_.reply.fault_word,
        .wanted = parts_.motor == Parts::Motor::kDrive && input.motor_permitted && free_trial,
        .force_zero = force_n_ == 0.0,
        .trial = trial_.number});
@@ -410,8 +391,7 @@ const char* DevicePlant::unknown_iio() noexcept {
     return is_young(newest.old, newest.old_at_ns, now_ns_, most_ticks);
   };
   if (missing(parts_.force, load_cell_v_)) {
-    return late(load_cell_, devices_.load_cell.max_age_ticks) ||
-                   late(indicator_, devices_.indicator.max_age_ticks)
+    return late(load_cell_, devices_.load_cell.max_age_ticks)
                ? "the samples of the load cell come too late"
                : "the load cell is silent, or at its end";
   }
@@ -433,11 +413,7 @@ void DevicePlant::judge() noexcept {
   if (!drive_fresh()) why_ = text_of(Reason::kSilent);
   if (jumped_) why_ = text_of(Reason::kEncoder);
   if (arming_.stage() != Stage::kFaulted || trial_.number != arming_.trial()) return;
-  if (arming_.fault() != 0 && arming_.fault_word() != nullptr) {
-    std::snprintf(text_.data(), text_.size(), "the drive reports 0x%x in %s",
-                  static_cast<unsigned>(arming_.fault()), arming_.fault_word());
-    why_ = text_.data();
-  } else if (arming_.fault() != 0) {
+  if (arming_.fault() != 0) {
     std::snprintf(text_.data(), text_.size(), "the drive reports fault %d", arming_.fault());
     why_ = text_.data();
   } else {

@@ -19,7 +19,6 @@
 #include "services/core/signal/delay_line.hpp"
 #include "services/devices/device_rig/drive_link.hpp"
 #include "services/devices/device_rig/iio_link.hpp"
-#include "services/devices/device_rig/indicator_link.hpp"
 #include "services/devices/device_rig/platform_drive.hpp"
 #include "services/devices/device_rig/platform_link.hpp"
 #include "services/files/device_rig/calibration_file.hpp"
@@ -90,7 +89,6 @@ class DevicePlant final : public rig::Plant {
   [[nodiscard]] bool platform_fresh() const noexcept;
   /// NaN: no young sample, or one at an end of the converter's range (DR-12).
   [[nodiscard]] double iio_value(IioLink& link, const IioConfig& config) noexcept;
-  [[nodiscard]] double indicator_value() noexcept;
   void take_accelerometer() noexcept;
 
   static constexpr double kNothingYet = std::numeric_limits<double>::quiet_NaN();
@@ -107,7 +105,6 @@ class DevicePlant final : public rig::Plant {
   std::unique_ptr<IioLink> accelerometer_;
   std::optional<Mount> mount_;  ///< of an accelerometer of three axes
   std::unique_ptr<IioLink> load_cell_;
-  std::unique_ptr<IndicatorLink> indicator_;
 
   Trial trial_;
   Tick tick_ = 0;

@@ -7,7 +7,6 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/device_rig/drive_protocols.hpp"
 #include "services/core/device_rig/parts.hpp"
-#include "services/devices/device_rig/joystick_port.hpp"
 #include "services/files/settings/placed_error.hpp"
 #include "services/system/process/clock.hpp"
 #include "services/system/transport/can_socket.hpp"
@@ -29,14 +28,8 @@ constexpr std::int64_t kPollEach_ns = 10 * kMs_ns;
 constexpr int kWait_ms = 100;
 
 std::unique_ptr<runtime::Port> port_of(const DriveConfig& config) {
-  switch (drive_of(config)) {
-    case Parts::Drive::kMoteusCan:
-      return std::make_unique<runtime::CanSocket>(config.port);
-    case Parts::Drive::kJoystick:
-      return std::make_unique<JoystickPort>(config.port);
-    case Parts::Drive::kMoteus:
-    case Parts::Drive::kOdrive:
-      break;
+  if (drive_of(config) == Parts::Drive::kMoteusCan) {
+    return std::make_unique<runtime::CanSocket>(config.port);
   }
   return std::make_unique<runtime::SerialPort>(config.port);
 }

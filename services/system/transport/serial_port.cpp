@@ -7,10 +7,8 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "services/core/contract/config_error.hpp"
 
@@ -21,24 +19,12 @@ namespace {
   throw ConfigError("serial port " + path, why, want);
 }
 
-speed_t speed_of(const std::string& path, std::int64_t baud) {
-  constexpr std::array kSpeeds{std::pair{9600, B9600},     std::pair{19200, B19200},
-                               std::pair{38400, B38400},   std::pair{57600, B57600},
-                               std::pair{115200, B115200}, std::pair{230400, B230400},
-                               std::pair{460800, B460800}, std::pair{921600, B921600}};
-  for (const auto& [number, speed] : kSpeeds) {
-    if (number == baud) return static_cast<speed_t>(speed);
-  }
-  refuse(path, std::to_string(baud) + " Bd",
-         "one of 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600");
-}
-
-void make_raw(int descriptor, const std::string& path, speed_t speed) {
+void make_raw(int descriptor, const std::string& path) {
   termios settings{};
   if (tcgetattr(descriptor, &settings) != 0) refuse(path, "no terminal", "a serial port");
   cfmakeraw(&settings);
-  cfsetispeed(&settings, speed);
-  cfsetospeed(&settings, speed);
+  // A UART's; a USB adapter's own and a pseudo-terminal ignore it.
+  cfsetspeed(&settings, B921600);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cc[VMIN] =
       1;  // nothing there reads as EAGAIN, and 0 means that the other side is gone
@@ -49,8 +35,7 @@ void make_raw(int descriptor, const std::string& path, speed_t speed) {
 
 }  // namespace
 
-SerialPort::SerialPort(const std::string& path, std::int64_t baud) {
-  const speed_t speed = speed_of(path, baud);
+SerialPort::SerialPort(const std::string& path) {
   descriptor_ = open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor_ < 0) {
     refuse(path, std::strerror(errno), "a port that this user may read and write");
@@ -60,7 +45,7 @@ SerialPort::SerialPort(const std::string& path, std::int64_t baud) {
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       refuse(path, "a port that another process has", "a port for this session alone");
     }
-    make_raw(descriptor_, path, speed);
+    make_raw(descriptor_, path);
     ioctl(descriptor_, TIOCEXCL);
     tcflush(descriptor_, TCIOFLUSH);
   } catch (...) {

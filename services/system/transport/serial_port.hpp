@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "services/system/transport/port.hpp"
@@ -11,10 +10,9 @@ namespace stillhand::runtime {
 /// A serial port or pseudo-terminal, raw and non-blocking, for this process alone.  One thread.
 class SerialPort final : public Port {
  public:
-  /// @param baud  a UART's; a USB adapter's own and a pseudo-terminal ignore it
-  /// @throws ConfigError if the port is missing, is no terminal, cannot be opened, another process
-  ///         has it, or the system has no such speed
-  explicit SerialPort(const std::string& path, std::int64_t baud = 921600);
+  /// @throws ConfigError if the port is missing, is no terminal, cannot be opened, or another
+  ///         process has it
+  explicit SerialPort(const std::string& path);
   ~SerialPort() override;
 
   [[nodiscard]] int descriptor() const noexcept override { return descriptor_; }

@@ -78,7 +78,7 @@ TEST(UnservedTest, ASignalOfADeviceThatNothingPutsIsNamed) {
   using Source = Parts::Source;
   Parts parts = parts_of({});
   EXPECT_EQ(unserved(parts, untouched()), nullptr);
-  for (const Source source : {Source::kDrive, Source::kIio, Source::kIndicator}) {
+  for (const Source source : {Source::kDrive, Source::kIio}) {
     parts.force = source;
     rig::RawSample raw = untouched();
     EXPECT_STREQ(unserved(parts, raw), "force");

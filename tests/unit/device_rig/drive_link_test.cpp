@@ -6,13 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <utility>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/system/process/clock.hpp"
-#include "tests/emulators/odrive_emulator.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/device_rig/emulated_drive.hpp"
@@ -26,8 +24,13 @@ using testing::HasSubstr;
 constexpr SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
 
 /// A link to an emulated drive.
-class LinkTest : public testing::Test {
+class DriveLinkTest : public testing::Test {
  protected:
+  explicit DriveLinkTest(bool uart = false) : emulated_(uart) {
+    config_.port = emulated_.port();
+    config_.watchdog_s = 0.1;
+    config_.checksum = uart;
+  }
   std::string refusal() {
     return support::refusal([&] { const DriveLink sut(config_, kLimits); });
   }
@@ -42,20 +45,10 @@ class LinkTest : public testing::Test {
       return condition(sut.newest());
     });
   }
-  template <typename... Words>
-  explicit LinkTest(Words&&... drive) : emulated_(std::forward<Words>(drive)...) {
-    config_.port = emulated_.port();
-    config_.watchdog_s = 0.1;
-  }
 
   EmulatedDrive emulated_;
   DriveConfig config_;
   std::uint64_t demands_ = 0;
-};
-
-class DriveLinkTest : public LinkTest {
- protected:
-  explicit DriveLinkTest(bool uart = false) : LinkTest(uart) { config_.checksum = uart; }
 };
 
 class UartLinkTest : public DriveLinkTest {
@@ -170,85 +163,6 @@ TEST_F(DriveLinkTest, DamagedTruncatedAndSenselessAnswersAreNoSamples) {
     std::uint64_t last = 0;
     EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0, [&](const DriveSample& sample) {
       return sample.sequence == std::exchange(last, sample.sequence);
-    }));
-    emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = false; });
-    EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
-                             [&](const DriveSample& sample) { return sample.sequence > last; }));
-  }
-}
-
-class OdriveLinkTest : public LinkTest {
- protected:
-  OdriveLinkTest()
-      : LinkTest(std::make_unique<emulators::OdriveEmulator>(), emulators::Answers::kLines) {
-    config_.kind = "odrive";
-  }
-};
-
-TEST_F(OdriveLinkTest, ReadsTheSettingsBackAndFollowsOrders) {
-  DriveLink sut(config_, kLimits);
-  EXPECT_TRUE(sut.newest().checked);
-  EXPECT_EQ(sut.serial(), "2071339D4B42");
-  EXPECT_TRUE(orders_until(sut, Order::kTorque, 0.5, [](const DriveSample& sample) {
-    return sample.reply.mode == DriveMode::kTorque && sample.reply.torque_n_m > 0.49;
-  }));
-  EXPECT_EQ(emulated_.record().first_torque_n_m, 0.0);
-  EXPECT_EQ(sut.newest().damaged, 0u);
-}
-
-TEST_F(OdriveLinkTest, ADriveWithoutWatchdogOrTorqueLimitIsRefusedWithTheCommandThatMendsIt) {
-  emulated_.with([](auto& drive, auto&) { drive.set("axis0.config.enable_watchdog", "0"); });
-  EXPECT_THAT(refusal(), HasSubstr("this mends it: w axis0.config.enable_watchdog 1, then ss"));
-  emulated_.with([](auto& drive, auto&) {
-    drive.set("axis0.config.enable_watchdog", "1");
-    drive.set("axis0.motor.config.torque_lim", "inf");
-  });
-  EXPECT_THAT(refusal(), HasSubstr("axis0.motor.config.torque_lim: got inf, want more than 0"));
-}
-
-TEST_F(OdriveLinkTest, AFirmwareWithoutAPropertyIsRefused) {
-  emulated_.with([](auto& drive, auto&) { drive.forget(0); });
-  EXPECT_THAT(refusal(), HasSubstr("axis0.controller.error: got invalid property, want a number"));
-}
-
-TEST_F(OdriveLinkTest, ItsEndAndItsSilenceLeaveNoTorque) {
-  {
-    DriveLink sut(config_, kLimits);
-    ASSERT_TRUE(orders_until(sut, Order::kTorque, 0.5,
-                             [&](const DriveSample&) { return emulated_.torque_n_m() > 0.49; }));
-    // Nothing more is demanded: the watchdog of the drive ends the torque.
-    EXPECT_TRUE(eventually(
-        [&] { return emulated_.record().timeouts >= 1 && emulated_.torque_n_m() == 0.0; }));
-    ASSERT_TRUE(orders_until(sut, Order::kTorque, 0.5,
-                             [&](const DriveSample&) { return emulated_.torque_n_m() > 0.49; }));
-  }
-  EXPECT_TRUE(eventually(
-      [&] { return emulated_.with([](auto& drive, auto&) { return !drive.follows(); }); }));
-}
-
-TEST_F(OdriveLinkTest, ADriveThatStartsAgainOrComesBackIsCheckedAgain) {
-  DriveLink sut(config_, kLimits);
-  ASSERT_TRUE(orders_until(sut, Order::kQuery, 0.0,
-                           [](const DriveSample& sample) { return sample.sequence > 300; }));
-  emulated_.with([](auto& drive, auto&) { drive.reboot(runtime::monotonic_ns()); });
-  for (const bool checked : {false, true}) {
-    EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
-                             [&](const DriveSample& sample) { return sample.checked == checked; }));
-  }
-}
-
-TEST_F(OdriveLinkTest, AnswersThatAreSpoiltAreNoSamples) {
-  DriveLink sut(config_, kLimits);
-  using emulators::Mischief;
-  for (bool Mischief::* kind : {&Mischief::garbage, &Mischief::truncated, &Mischief::damaged,
-                                &Mischief::lost, &Mischief::silent}) {
-    emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = true; });
-    // What was under way before comes first.
-    std::uint64_t last = 0;
-    int still = 0;
-    EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0, [&](const DriveSample& sample) {
-      still = sample.sequence == std::exchange(last, sample.sequence) ? still + 1 : 0;
-      return still > 5;
     }));
     emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = false; });
     EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,

@@ -5,12 +5,10 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <memory>
 #include <mutex>
 #include <stop_token>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "services/system/process/clock.hpp"
 #include "tests/emulators/moteus_emulator.hpp"
@@ -21,12 +19,8 @@ namespace stillhand::device_rig {
 /// An emulated drive behind its pseudo-terminal, in a thread of its own.
 class EmulatedDrive {
  public:
-  explicit EmulatedDrive(bool uart = false)
-      : EmulatedDrive(std::make_unique<emulators::MoteusEmulator>(uart),
-                      emulators::Answers::kFrames) {}
-  EmulatedDrive(std::unique_ptr<emulators::DriveEmulator> drive, emulators::Answers answers)
-      : drive_(std::move(drive)), serial_(link_, answers) {
-    drive_->begin(runtime::monotonic_ns());
+  explicit EmulatedDrive(bool uart = false) : drive_(uart), serial_(link_) {
+    drive_.begin(runtime::monotonic_ns());
     thread_ = std::jthread([this](const std::stop_token& stop) { answer(stop); });
   }
 
@@ -35,7 +29,7 @@ class EmulatedDrive {
   template <typename Use>
   auto with(Use use) {
     const std::lock_guard lock(mutex_);
-    return use(*drive_, serial_);
+    return use(drive_, serial_);
   }
   double torque_n_m() {
     return with([](auto& drive, auto&) { return drive.torque_n_m(); });
@@ -52,17 +46,17 @@ class EmulatedDrive {
       const std::lock_guard lock(mutex_);
       const std::int64_t now_ns = runtime::monotonic_ns();
       if (wanted.revents != 0 && serial_.descriptor() >= 0) {
-        serial_.write(drive_->take(serial_.read(), now_ns), now_ns);
+        serial_.write(drive_.take(serial_.read(), now_ns), now_ns);
       }
       serial_.send_due(now_ns);
-      drive_->tick(now_ns);
+      drive_.tick(now_ns);
     }
   }
 
   std::filesystem::path link_ =
       std::filesystem::temp_directory_path() / ("stillhand-drive-" + std::to_string(getpid()));
   std::mutex mutex_;
-  std::unique_ptr<emulators::DriveEmulator> drive_;
+  emulators::MoteusEmulator drive_;
   emulators::SerialSide serial_;
   std::jthread thread_;  // last
 };

@@ -50,18 +50,6 @@ TEST(PartsTest, AnIioDeviceServesAccelerationOrForceWithoutADrive) {
   EXPECT_THAT(refusal(config), testing::HasSubstr("devices.signals.angle: got iio, want one of"));
 }
 
-TEST(PartsTest, AnIndicatorServesTheForceAlone) {
-  DevicesConfig config;
-  config.signals.force = "indicator";
-  EXPECT_EQ(parts_of(config).force, Parts::Source::kIndicator);
-  EXPECT_FALSE(parts_of(config).needs_drive());
-  config.indicator.sign = 0;
-  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.indicator.sign: got 0, want 1 or -1"));
-  config = {};
-  config.signals.acceleration = "indicator";
-  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.signals.acceleration: got indicator"));
-}
-
 TEST(PartsTest, AMountIsARotationAndHasNoSign) {
   DevicesConfig config;
   config.signals.acceleration = "iio";
@@ -72,39 +60,6 @@ TEST(PartsTest, AMountIsARotationAndHasNoSign) {
               testing::HasSubstr("devices.accelerometer.sign: got -1 with a mount"));
   config.accelerometer.mount = "1 0 0";
   EXPECT_THAT(refusal(config), testing::HasSubstr("devices.accelerometer.mount: got 1 0 0, want"));
-}
-
-TEST(PartsTest, AnOdriveServesAngleAndMotorAndNoInput) {
-  DevicesConfig config;
-  config.drive.kind = "odrive";
-  config.signals.angle = config.signals.motor = "drive";
-  EXPECT_EQ(refusal(config), "accepted");
-  config.signals.force = "drive";
-  EXPECT_THAT(
-      refusal(config),
-      testing::HasSubstr("devices.signals.force: got drive, which is an ODrive or a joystick"));
-  config.drive.kind = "vesc";
-  EXPECT_THAT(
-      refusal(config),
-      testing::HasSubstr(
-          "devices.drive.kind: got vesc, want one of moteus, moteus_can, odrive, joystick"));
-}
-
-TEST(PartsTest, AJoystickNamesItselfADemonstrationWhereverPartsAreNamed) {
-  DevicesConfig config;
-  config.drive.kind = "joystick";
-  config.signals.angle = config.signals.motor = "demonstration_joystick";
-  EXPECT_EQ(parts_of(config).motor, Parts::Motor::kDrive);
-  EXPECT_EQ(in_words(config.signals),
-            "angle demonstration_joystick, motor demonstration_joystick; simulated: acceleration, "
-            "force, platform");
-  EXPECT_EQ(named_parts(config.signals)[3].second, "demonstration_joystick");
-  config.signals.motor = "drive";
-  EXPECT_THAT(refusal(config),
-              testing::HasSubstr("got drive, which is a joystick, want demonstration_joystick"));
-  config.signals.motor = "demonstration_joystick";
-  config.drive.kind = "moteus";
-  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.drive.kind: got no joystick"));
 }
 
 TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
@@ -118,6 +73,10 @@ TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
   config = {};
   config.signals.acceleration = "platform";
   EXPECT_THAT(refusal(config), testing::HasSubstr("plain_udp"));
+  config = {};
+  config.drive.kind = "vesc";
+  EXPECT_THAT(refusal(config),
+              testing::HasSubstr("devices.drive.kind: got vesc, want one of moteus, moteus_can"));
   config = {};
   config.drive.torque_sign = 0;
   EXPECT_THAT(refusal(config), testing::HasSubstr("1 or -1"));
@@ -140,14 +99,12 @@ TEST(LoadDevicesTest, AWordThatIsNoPartIsRefusedWithFileKeyAndTheWordsThatThereA
   };
   EXPECT_EQ(
       refused("signals: {force: spring}\n"),
-      file.string() +
-          ": devices.signals.force: got spring, want one of simulated, drive, iio, indicator");
+      file.string() + ": devices.signals.force: got spring, want one of simulated, drive, iio");
   EXPECT_EQ(refused("signals: {force: [iio, drive]}\n"),
             file.string() +
                 ":1:18: devices.signals.force: got a list, want text of 1 to 20 characters: force "
-                "of the hand on the stick: simulated, drive (an analogue input of it), iio or "
-                "indicator");
-  EXPECT_EQ(refused("signals: {force: indicator}\n"), "accepted");
+                "of the hand on the stick: simulated, drive (an analogue input of it) or iio");
+  EXPECT_EQ(refused("signals: {force: iio}\n"), "accepted");
 }
 
 }  // namespace
