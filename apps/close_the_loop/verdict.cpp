@@ -8,7 +8,7 @@
 #include "apps/close_the_loop/drive_effects.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/core/diagnosis/effects/delay.hpp"
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::close_the_loop {

@@ -1,19 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/diagnosis/detection/planted_limits.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 
 #include "services/core/diagnosis/detection/moved_residuals.hpp"
-#include "services/core/diagnosis/detection/planted_rule.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/examples.hpp"
+#include "services/core/diagnosis/selection.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
+
+// The rule of the search, Eq. DG-17, asked of a column that was planted in moved residuals.
+class PlantedRule {
+ public:
+  // @param plain, behind  without the noise model and with it; null: there is none
+  PlantedRule(const MovedResiduals& plain, const MovedResiduals* behind, const LastRound& round,
+              const SearchOptions& options)
+      : plain_(plain), behind_(behind), round_(round), options_(options) {}
+
+  // [-] of the moved residuals, in which it is found.
+  // @param factor  of column k; the residual has the column with it
+  // @param left_out  the effect leaves samples out instead of explaining them
+  [[nodiscard]] double share_found(Eigen::Index k, double factor, bool left_out) const;
+
+ private:
+  [[nodiscard]] bool is_found(Eigen::Index k, double factor, std::size_t i) const;
+  [[nodiscard]] bool is_burst(Eigen::Index k, double factor, std::size_t i) const;
+
+  const MovedResiduals& plain_;
+  const MovedResiduals* behind_;
+  const LastRound& round_;
+  const SearchOptions& options_;
+};
+
+Comparison asked_of(const MovedResiduals& residuals, Eigen::Index k, double factor, std::size_t i) {
+  return compared(residuals.without(k, factor, i), residuals.with(k, factor, i));
+}
+
+double PlantedRule::share_found(Eigen::Index k, double factor, bool left_out) const {
+  double found = 0.0;
+  for (std::size_t i = 0; i < plain_.count(); ++i) {
+    if (left_out ? is_burst(k, factor, i) : is_found(k, factor, i)) found += 1.0;
+  }
+  return found / static_cast<double>(plain_.count());
+}
+
+// Behind the filter, and then without it the error has to fall as well; or without it alone.
+bool PlantedRule::is_found(Eigen::Index k, double factor, std::size_t i) const {
+  const auto passes = [this](const Comparison& comparison) {
+    return worth_it(comparison, options_, round_.least_fall, round_.candidates);
+  };
+  const Comparison plain = asked_of(plain_, k, factor, i);
+  if (passes(plain)) return true;
+  return behind_ != nullptr && 1.0 - plain.rmse_ratio > round_.least_fall &&
+         passes(asked_of(*behind_, k, factor, i));
+}
+
+bool PlantedRule::is_burst(Eigen::Index k, double factor, std::size_t i) const {
+  const HeldOut with_burst = plain_.without(k, factor, i);
+  return 1.0 - compared(with_burst, plain_.without(k, 0.0, i)).rmse_ratio > options_.large_fall;
+}
 
 constexpr std::size_t kMoved = 12;
 constexpr double kSmallestPlanted = 0.02;  // [-] of the residual

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/asymmetry.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/loop_proposals.hpp"
 #include "services/core/diagnosis/effects/map_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
@@ -36,6 +35,12 @@ std::string square_in_words(const Effect& effect) {
          " of the square at " + largest;
 }
 
+/// A response that differs with the direction, an even function of a signal:
+///
+///   v + k |v| of input or output;  u + s (u^2/u_m - u) of the input;  |v| of the output;
+///   feedback of |z| or z^2 inside the body;  c (x - m)^2 of a channel
+///
+/// Source: METHOD Eq. DG-25; bilinear and quadratic stiffness: Worden and Tomlinson (2001).
 class Asymmetry final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "asymmetry"; }

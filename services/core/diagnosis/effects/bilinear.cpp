@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/bilinear.hpp"
-
 #include <algorithm>
 #include <complex>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
@@ -11,6 +10,11 @@ namespace {
 
 constexpr double kLargest = 10.0;  // [-] of the gain, per standard deviation of the channel
 
+/// A product of two channels, or a gain that follows a channel:
+///
+///   c (x_1 - m_1)(x_2 - m_2);  g = 1 + s (x - m) on the body's output
+///
+/// Source: METHOD Eq. DG-36.
 class Bilinear final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "bilinear"; }

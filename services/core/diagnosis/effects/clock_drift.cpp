@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/clock_drift.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/model/interpolation.hpp"
 
@@ -14,6 +13,11 @@ constexpr double kLargest = 0.02;  // [-] crystals: 1e-4; recorders that drop sa
 // [s] over the record, each way: what a linearisation doesn't reach.
 constexpr double kTried_s[] = {-0.24, -0.12, -0.06, -0.03, 0.0, 0.03, 0.06, 0.12, 0.24};
 
+/// Clocks of input and output that run apart:
+///
+///   u(t - d (t - t_m)),  t_m the middle of the record
+///
+/// Source: METHOD Eq. DG-35, by the fractional delay of DG-2, Laakso et al. (1996).
 class ClockDrift final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "clock_drift"; }

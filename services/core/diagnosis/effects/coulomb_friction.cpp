@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/coulomb_friction.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
@@ -29,6 +28,11 @@ std::vector<double> signs(const std::vector<double>& v, const std::vector<Stretc
   return s;
 }
 
+/// A force with the sign of a rate:
+///
+///   c sign(v)  or  c tanh(v / v_t)
+///
+/// Source: METHOD Eq. DG-23; Worden and Tomlinson (2001).
 class CoulombFriction final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "coulomb_friction"; }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/coupled_input.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/model/steady_start.hpp"
 
@@ -48,6 +47,11 @@ double longest_lag_s(const Signal& signal, const Signals& signals) {
 
 bool lagged(const Effect& effect) { return effect.form == "lagged"; }
 
+/// A linear path from another channel:
+///
+///   c x;  c_1 x + c_2 x';  c times a first-order low-pass of x;  x through the body's poles
+///
+/// Source: METHOD Eq. DG-22.
 class CoupledInput final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "coupled_input"; }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/dead_zone.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/loop_proposals.hpp"
 #include "services/core/diagnosis/effects/map_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
@@ -18,6 +17,11 @@ double without_play(double x, double half_width) {
   return x - std::clamp(x, -half_width, half_width);
 }
 
+/// Play: nothing happens within a range of half width h:
+///
+///   x - clip(x, h) of input, output or a position;  feedback of clip(z, 1) inside the body
+///
+/// Source: METHOD Eq. DG-27; piecewise linear stiffness: Worden and Tomlinson (2001).
 class DeadZone final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "dead_zone"; }

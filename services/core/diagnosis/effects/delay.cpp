@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/delay.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/model/interpolation.hpp"
 
@@ -23,6 +22,11 @@ constexpr double kMinimum_s = 0.015;
 // hundredths (2026-11-24, white and low-pass noise).
 constexpr double kHopeless = -0.25;
 
+/// A pure delay of the input that the body's poles and zeros do not provide:
+///
+///   u(t - d)
+///
+/// Source: METHOD Eq. DG-20, by the fractional delay of DG-2, Laakso et al. (1996).
 class Delay final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "delay"; }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/drift.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 
@@ -51,6 +50,11 @@ bool stands_out(const Effect& drift, const HalfCosines& of_residual, const Scree
   return slow >= kLeastRatio * rest;
 }
 
+/// A slow additive change, L the length of the record:
+///
+///   c (t/L - 1/2);  c e^(-t/tau);  sum_{k=1..3} c_k cos(pi k t/L)
+///
+/// Source: METHOD Eq. DG-32.
 class Drift final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "drift"; }

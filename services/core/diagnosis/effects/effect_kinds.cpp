@@ -1,24 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/asymmetry.hpp"
-#include "services/core/diagnosis/effects/bilinear.hpp"
-#include "services/core/diagnosis/effects/clock_drift.hpp"
-#include "services/core/diagnosis/effects/coulomb_friction.hpp"
-#include "services/core/diagnosis/effects/coupled_input.hpp"
-#include "services/core/diagnosis/effects/dead_zone.hpp"
-#include "services/core/diagnosis/effects/delay.hpp"
-#include "services/core/diagnosis/effects/drift.hpp"
-#include "services/core/diagnosis/effects/free_form.hpp"
-#include "services/core/diagnosis/effects/hysteresis.hpp"
-#include "services/core/diagnosis/effects/input_saturation.hpp"
-#include "services/core/diagnosis/effects/nonlinear_stiffness.hpp"
-#include "services/core/diagnosis/effects/output_saturation.hpp"
-#include "services/core/diagnosis/effects/position_ripple.hpp"
-#include "services/core/diagnosis/effects/regime_change.hpp"
-#include "services/core/diagnosis/effects/resonance.hpp"
-#include "services/core/diagnosis/effects/time_varying_gain.hpp"
-#include "services/core/diagnosis/effects/tone.hpp"
-#include "services/core/diagnosis/effects/transients.hpp"
-#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/effects/kinds.hpp"
 
 namespace stillhand::diagnosis {
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/free_form.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/map_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/fitting/baseline.hpp"
@@ -232,6 +231,16 @@ Curve shape_of(const Effect& effect) {
   return curve;
 }
 
+/// A curve whose shape the data alone give: straight between knots, level beyond the outer ones,
+///
+///   h(x) = sum_k c_k L_k(x),  L_k: 1 at knot k, 0 at every other knot
+///
+/// as a force h(x) or h(x) v, or as a factor 1 + h(x) on the body's output, x a channel or the
+/// size of an input (its RMS over some seconds).  Or a smooth curve m(u) in place of the first
+/// input.  When it is tried: Eq. DG-64.
+///
+/// Source: METHOD Eq. DG-63; Hastie, Tibshirani and Friedman (2009), section 5.2 (basis of linear
+/// splines).
 class FreeForm final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "free_form"; }

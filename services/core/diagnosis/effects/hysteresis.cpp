@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/hysteresis.hpp"
-
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/loop_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/model/loop_sizes.hpp"
@@ -22,6 +21,11 @@ Nonlinearity element_of(const Effect& effect, double threshold) {
   return {signal::step_of(operator_of(effect)), threshold};
 }
 
+/// A force that depends on the past of a displacement z, in units of a threshold:
+///
+///   w(n) = clip(w(n-1) + z(n) - z(n-1), 1)  or  dw = dz (1 - w sign dz)
+///
+/// Source: METHOD Eq. DG-26; Visintin (1994) for the first, Dahl (1968) for the second.
 class Hysteresis final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "hysteresis"; }

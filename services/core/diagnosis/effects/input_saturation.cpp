@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/input_saturation.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/map_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 
@@ -20,6 +19,11 @@ double limited(double u, double limit, bool softly) {
   return softly ? limit * std::tanh(u / limit) : std::clamp(u, -limit, limit);
 }
 
+/// An input that reaches the body only up to a limit L:
+///
+///   clip(u_1, L)  or  L tanh(u_1 / L)
+///
+/// Source: METHOD Eq. DG-29; a static map before a linear system: Schoukens and Ljung (2019).
 class InputSaturation final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "input_saturation"; }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/nonlinear_stiffness.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/loop_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/model/loop_sizes.hpp"
@@ -23,6 +22,12 @@ double levelled(double z, LoopMemory& /*memory*/) {
   return z - 1.0 + 2.0 / (std::exp(2.0 * z) + 1.0);
 }
 
+/// A hardening or softening spring, an odd function of a displacement z in units of a threshold:
+///
+///   feedback of z^3, z^3/(1 + z^2) or z - tanh z inside the body;  y + k y^3 of the output;
+///   c_1 (x - m) + c_2 (x - m)^3 of a position
+///
+/// Source: METHOD Eq. DG-24; cubic stiffness: Worden and Tomlinson (2001).
 class NonlinearStiffness final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "nonlinear_stiffness"; }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/output_saturation.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/map_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 
@@ -18,6 +17,11 @@ double lower(const Effect& effect) {
   return two_limits(effect) ? effect.value(1) : -effect.value(0);
 }
 
+/// An output that ends at a limit L, or at an upper and a lower one:
+///
+///   clip(y, L)  or  L tanh(y / L)
+///
+/// Source: METHOD Eq. DG-28; a static map behind a linear system: Schoukens and Ljung (2019).
 class OutputSaturation final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "output_saturation"; }

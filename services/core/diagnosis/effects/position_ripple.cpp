@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/position_ripple.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/fitting/line_search.hpp"
 
@@ -18,6 +17,11 @@ constexpr std::size_t kLines = 4;
 
 int harmonics_of(const Effect& effect) { return effect.form == "two harmonics" ? 2 : 1; }
 
+/// A force periodic in a position x, of spatial frequency k, with one or two harmonics (cogging):
+///
+///   sum_h c_h sin(2 pi h k x) + c'_h cos(2 pi h k x)
+///
+/// Source: METHOD Eq. DG-30.
 class PositionRipple final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "position_ripple"; }

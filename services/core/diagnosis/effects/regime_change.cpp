@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/regime_change.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
@@ -14,6 +13,11 @@ constexpr int kFine = 20;       // and around the best of them
 constexpr double kEdge = 0.05;  // of the record, at both ends: too short to determine a gain
 constexpr double kLargest = 5.0;
 
+/// A gain of the body's output that changes at one moment t_0:
+///
+///   g = 1 - c before t_0, 1 + c after
+///
+/// Source: METHOD Eq. DG-34.
 class RegimeChange final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "regime_change"; }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/resonance.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/fitting/modes.hpp"
 #include "services/core/diagnosis/model/steady_start.hpp"
@@ -20,6 +19,12 @@ constexpr double kLeastDamping = 0.003;
 constexpr double kLargestDamping = 0.95;
 constexpr double kLongestRinging = 0.125;  // [record lengths]
 
+/// A mode beyond the body's order, of frequency f and damping ratio z, for each input u_k:
+///
+///   (c_k,1 D + c_k,2) x_k,  x_k = u_k / (1 - 2 r cos(w sqrt(1 - z^2)) q^-1 + r^2 q^-2),
+///   r = e^(-z w),  w = 2 pi f T
+///
+/// Source: METHOD Eq. DG-21.
 class Resonance final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "resonance"; }

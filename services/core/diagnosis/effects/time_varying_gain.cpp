@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/time_varying_gain.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
@@ -63,6 +62,11 @@ Swing swing_of(const Effect& effect) {
   return swing;
 }
 
+/// A gain of the body's output that changes slowly over the record's length L:
+///
+///   g = 1 + c (2 t/L - 1);  1 + sum_{k=1..4} c_k cos(pi k t/L);  1 + s sin + c cos of 2 pi m t/L
+///
+/// Source: METHOD Eq. DG-33.
 class TimeVaryingGain final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "time_varying_gain"; }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/tone.hpp"
-
 #include <cmath>
 #include <numbers>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/fitting/line_search.hpp"
 
@@ -17,6 +16,11 @@ constexpr std::size_t kLines = 3;
 // record of thousands, exp(-25 ln 2) a line.
 constexpr double kLeastProminence = 25.0;
 
+/// A sinusoid in time that no channel has:
+///
+///   c sin(2 pi f t) + c' cos(2 pi f t)
+///
+/// Source: METHOD Eq. DG-31.
 class Tone final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "tone"; }

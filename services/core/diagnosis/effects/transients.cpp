@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/effects/transients.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
@@ -45,6 +44,9 @@ std::vector<double> window_squares(const Eigen::VectorXd& residual,
   return squares;
 }
 
+/// Isolated bursts: the samples from the begin to the end of each have weight 0.
+///
+/// Source: METHOD Eq. DG-37.
 class Transients final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "transients"; }
