@@ -17,7 +17,7 @@
 #include "apps/study/study.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/rig/sealed_file.hpp"
-#include "services/files/settings/describe.hpp"
+#include "services/files/settings/yaml_text.hpp"
 #include "services/system/process/remark.hpp"
 #include "services/system/process/stop.hpp"
 
@@ -88,8 +88,8 @@ bool has_simulated_people(const StudyRecord& record) {
 // The same people, where an experiment's are simulated; otherwise as many of the population.
 SimulatedSide simulated_next_to(const StudyRecord& record, const OnProgress& on_progress) {
   if (has_simulated_people(record)) {
-    if (settings::describe(record.options.population) !=
-        settings::describe(population::Population{})) {
+    if (settings::yaml_text(record.options.population) !=
+        settings::yaml_text(population::Population{})) {
       throw ConfigError("--population", "another population than the default",
                         "none: an experiment draws its participants from the default one");
     }

@@ -11,7 +11,7 @@
 #include "apps/study/trial_analysis.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/expects.hpp"
-#include "services/files/settings/describe.hpp"
+#include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -82,7 +82,7 @@ identification::FeedthroughModel used_model(const Identification& identification
 }
 
 bool is_calibrated(const StudyOptions& options) {
-  return settings::describe(options.population) == settings::describe(population::Population{}) &&
+  return settings::yaml_text(options.population) == settings::yaml_text(population::Population{}) &&
          options.protocol.trial_s == 180.0 && options.protocol.identify_s == 120.0;
 }
 

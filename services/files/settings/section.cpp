@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/files/settings/section.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -8,15 +11,68 @@
 #include <iterator>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <system_error>
 #include <utility>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/nearest.hpp"
-#include "services/files/settings/yaml_document.hpp"
 
 namespace stillhand::settings {
 namespace {
+
+// "file:line:column" of a place in a YAML text, counted from 1.
+std::string place_of(const YAML::Mark& mark, const std::string& source_name) {
+  if (mark.is_null()) return source_name;
+  return source_name + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
+}
+
+// Where the newest document begins; everything else is left to YAML::Load().
+class Beginning : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { mark_ = mark; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+  [[nodiscard]] const YAML::Mark& mark() const noexcept { return mark_; }
+
+ private:
+  YAML::Mark mark_;
+};
+
+void refuse_a_second(const std::string& yaml, const std::string& source_name) {
+  std::istringstream text(yaml);
+  YAML::Parser parser(text);
+  Beginning document;
+  if (!parser.HandleNextDocument(document)) return;
+  const YAML::Mark first = document.mark();
+  if (!parser.HandleNextDocument(document)) return;
+  if (document.mark().pos == first.pos) {
+    throw ConfigError(place_of(first, source_name), "a sign that begins no value",
+                      "well-formed YAML");
+  }
+  throw ConfigError(place_of(document.mark(), source_name), "a second document", "one");
+}
+
+// The one document of a YAML text; null for an empty text.  YAML::LoadAll() of yaml-cpp 0.7 never
+// returns for ", a: 1": it takes a document there that consumes nothing, for ever.
+YAML::Node one_document(const std::string& yaml, const std::string& source_name) {
+  try {
+    refuse_a_second(yaml, source_name);
+    return YAML::Load(yaml);
+  } catch (const YAML::Exception& error) {
+    throw ConfigError(place_of(error.mark, source_name), error.msg, "well-formed YAML");
+  }
+}
 
 // Settings have three levels and some tens of keys.  An alias inside its own anchor would never
 // end, and aliases can multiply a part at every level.

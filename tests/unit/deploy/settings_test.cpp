@@ -21,8 +21,8 @@
 #include "services/core/sensing/conditioner.hpp"
 #include "services/core/vehicle/vehicle_settings.hpp"
 #include "services/files/recording/file_io.hpp"
-#include "services/files/settings/describe.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand {
 namespace {
@@ -37,18 +37,6 @@ std::string uncommented(const std::string& file) {
     if (explained && line.starts_with("# ")) text += line.substr(2) + "\n";
   }
   return text;
-}
-
-// Names of all settings, groups joined by dots, from the first column of describe().
-std::set<std::string> names_in(const std::string& table) {
-  std::set<std::string> names;
-  std::istringstream lines(table);
-  for (std::string line; std::getline(lines, line);) {
-    const auto first = line.find('`');
-    if (first == std::string::npos) continue;  // the table's head
-    names.insert(line.substr(first + 1, line.find('`', first + 1) - first - 1));
-  }
-  return names;
 }
 
 // Keys that the text sets, by its indentation of two blanks a group.
@@ -75,11 +63,11 @@ void expect_in_step(const std::string& file) {
   const std::string text = uncommented(file);
   ASSERT_FALSE(text.empty()) << file;
   const Config defaults;
-  EXPECT_EQ(settings::describe(settings::load_text<Config>(text, file)),
-            settings::describe(defaults))
+  EXPECT_EQ(settings::yaml_text(settings::load_text<Config>(text, file)),
+            settings::yaml_text(defaults))
       << file;
   const std::set<std::string> shown = keys_of(text);
-  for (const std::string& name : names_in(settings::describe(defaults))) {
+  for (const std::string& name : keys_of(settings::yaml_text(defaults))) {
     EXPECT_TRUE(shown.contains(name)) << file << " lacks " << name;
   }
 }

@@ -9,8 +9,8 @@
 #include "services/core/population/population.hpp"
 #include "services/core/rig/rig.hpp"
 #include "services/files/recording/file_io.hpp"
-#include "services/files/settings/describe.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/files/settings/yaml_text.hpp"
 #include "tests/support/folder.hpp"
 
 namespace stillhand::lab {
@@ -27,9 +27,9 @@ TEST(SubjectSettingsTest, RigAndOperatorAreTheSubjectThatTheStudyDraws) {
   const auto person =
       settings::load<human_operator::SubjectConfig>(to / "human_operator.yaml", "human_operator");
   EXPECT_EQ(rig.body.shoulder_stiffness_n_m, drawn.body.shoulder_stiffness_n_m);
-  EXPECT_EQ(settings::describe(rig.body), settings::describe(drawn.body));
-  EXPECT_EQ(settings::describe(rig.stick), settings::describe(rig::StickConfig{}));
-  EXPECT_EQ(settings::describe(person.crossover), settings::describe(drawn.who));
+  EXPECT_EQ(settings::yaml_text(rig.body), settings::yaml_text(drawn.body));
+  EXPECT_EQ(settings::yaml_text(rig.stick), settings::yaml_text(rig::StickConfig{}));
+  EXPECT_EQ(settings::yaml_text(person.crossover), settings::yaml_text(drawn.who));
   EXPECT_EQ(person.pointer.arm.effective_stiffness_n_m, drawn.who.arm.effective_stiffness_n_m);
   for (const auto& entry : std::filesystem::directory_iterator(kConfig)) {
     EXPECT_TRUE(std::filesystem::exists(to / entry.path().filename())) << entry.path();

@@ -15,8 +15,8 @@
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
-#include "services/files/settings/describe.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/files/settings/yaml_text.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::settings {
@@ -158,7 +158,7 @@ double random_double(std::mt19937_64& engine) {
   return std::ldexp(mantissa(engine), exponent(engine));
 }
 
-// Written with the shortest digits, as `describe` prints them, a number comes back bit for bit,
+// Written with the shortest digits, as `yaml_text` writes them, a number comes back bit for bit,
 // from 2^-1000 to 2^1000.
 TEST(SectionReaderTest, RandomSettingsAreReadBackBitForBit) {
   std::mt19937_64 engine(41);
@@ -177,7 +177,7 @@ TEST(SectionReaderTest, RandomSettingsAreReadBackBitForBit) {
     ASSERT_EQ(got.filter.corner_hz, want.filter.corner_hz) << yaml;
     ASSERT_EQ(got.filter.bypassed, want.filter.bypassed) << yaml;
     ASSERT_EQ(got.offset_counts, want.offset_counts) << yaml;
-    ASSERT_EQ(describe(got), describe(want));
+    ASSERT_EQ(yaml_text(got), yaml_text(want));
   }
 }
 

@@ -11,7 +11,7 @@
 
 #include "apps/study/explain/inference.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/files/settings/describe.hpp"
+#include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -269,13 +269,13 @@ TEST(CausesTest, EachCauseChangesTheOptionsAndHasASource) {
     const bool differs =
         changed.canceller != base.canceller || changed.motor.delay_s != base.motor.delay_s ||
         changed.motor.gain != base.motor.gain ||
-        settings::describe(changed.population) != settings::describe(base.population);
+        settings::yaml_text(changed.population) != settings::yaml_text(base.population);
     EXPECT_TRUE(differs) << cause.name;
     EXPECT_NO_THROW(validate(changed.population, "population")) << cause.name;
     if (cause.grid.empty()) continue;
     EXPECT_EQ(std::ranges::count(cause.grid, cause.none), 1) << cause.name;
     cause.apply(changed, cause.none);
-    EXPECT_EQ(settings::describe(changed.population), settings::describe(base.population))
+    EXPECT_EQ(settings::yaml_text(changed.population), settings::yaml_text(base.population))
         << cause.name;
   }
 }

@@ -13,7 +13,7 @@
 #include "apps/study/subject_session.hpp"
 #include "services/core/signal/random.hpp"
 #include "services/core/statistics/descriptive.hpp"
-#include "services/files/settings/describe.hpp"
+#include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -56,9 +56,9 @@ const auto kCrossover = [](const session::CoreConfigs& c) { return c.human_opera
 TEST(PersonalSpreadTest, AsItStandsNothingDiffers) {
   for (const auto phase : {TrialPhase::kPegged, TrialPhase::kTracking}) {
     const session::CoreConfigs sut = changed({}, 3, trial_of(phase, 2, true));
-    EXPECT_EQ(settings::describe(sut.rig), settings::describe(rig::RigConfig{}));
-    EXPECT_EQ(settings::describe(sut.human_operator),
-              settings::describe(human_operator::CrossoverConfig{}));
+    EXPECT_EQ(settings::yaml_text(sut.rig), settings::yaml_text(rig::RigConfig{}));
+    EXPECT_EQ(settings::yaml_text(sut.human_operator),
+              settings::yaml_text(human_operator::CrossoverConfig{}));
   }
 }
 
@@ -141,7 +141,7 @@ TEST(SpreadCausesTest, EachChangesTheOptionsAndHasASource) {
     const bool differs =
         std::memcmp(&*options.personal, &*base.personal, sizeof(PersonalSpread)) != 0 ||
         options.canceller != base.canceller ||
-        settings::describe(options.population) != settings::describe(base.population);
+        settings::yaml_text(options.population) != settings::yaml_text(base.population);
     EXPECT_TRUE(differs) << cause.name;
   }
 }
