@@ -55,22 +55,22 @@ Arming::Output Arming::fail(const Input& input, Reason reason) noexcept {
   reason_ = reason;
   fault_ = input.mode == DriveMode::kFault ? input.fault : 0;
   blocked_trial_ = input.trial;
-  return {stage_, Order::kStop, reason_, true, false};
+  return {stage_, Order::kStop, reason_, false};
 }
 
 Arming::Output Arming::idle(const Input& input) noexcept {
   stage_ = !input.fresh ? Stage::kAbsent : input.checked ? Stage::kChecked : Stage::kFound;
   if (stage_ == Stage::kChecked && input.mode != DriveMode::kOff) {
     // Whatever it does, it was not asked to: driver off, which clears a latched timeout, too.
-    return {stage_, Order::kStop, Reason::kNone, false, false};
+    return {stage_, Order::kStop, Reason::kNone, false};
   }
   const bool may = input.wanted && input.trial != blocked_trial_ && !input.jumped;
   if (stage_ != Stage::kChecked || !may || !input.force_zero)
-    return {stage_, Order::kQuery, Reason::kNone, false, false};
+    return {stage_, Order::kQuery, Reason::kNone, false};
   stage_ = Stage::kArmed;
   since_ticks_ = 0;
   confirmed_ = false;
-  return {stage_, Order::kTorque, Reason::kNone, false, false};
+  return {stage_, Order::kTorque, Reason::kNone, false};
 }
 
 Arming::Output Arming::armed(const Input& input) noexcept {
@@ -80,9 +80,9 @@ Arming::Output Arming::armed(const Input& input) noexcept {
   // Without permission the force ramps down first, then the driver goes off.
   if (!input.wanted && input.force_zero) {
     stage_ = Stage::kChecked;
-    return {stage_, Order::kStop, Reason::kNone, false, false};
+    return {stage_, Order::kStop, Reason::kNone, false};
   }
-  return {stage_, Order::kTorque, Reason::kNone, false, confirmed_};
+  return {stage_, Order::kTorque, Reason::kNone, confirmed_};
 }
 
 Arming::Output Arming::faulted(const Input& input) noexcept {
@@ -93,7 +93,7 @@ Arming::Output Arming::faulted(const Input& input) noexcept {
     reason_ = Reason::kNone;
     return idle(input);
   }
-  return {stage_, quiet ? Order::kQuery : Order::kStop, reason_, false, false};
+  return {stage_, quiet ? Order::kQuery : Order::kStop, reason_, false};
 }
 
 }  // namespace stillhand::device_rig

@@ -49,7 +49,6 @@ class Arming {
     Stage stage = Stage::kAbsent;
     Order order = Order::kQuery;
     Reason reason = Reason::kNone;  ///< of kFaulted
-    bool newly_faulted = false;
     bool follows = false;  ///< armed, and the drive has said so: before that the torque is 0
   };
 
@@ -60,7 +59,6 @@ class Arming {
   [[nodiscard]] std::int64_t trial() const noexcept { return blocked_trial_; }
   /// Fault code of the drive when it was faulted; 0: none.
   [[nodiscard]] int fault() const noexcept { return fault_; }
-  /// Where the bits of that code are explained; null: it is a number.
 
  private:
   /// Until the drive says that it follows, and that it is off [ticks].

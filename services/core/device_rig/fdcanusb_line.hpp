@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "services/core/device_rig/line_splitter.hpp"
 #include "services/core/device_rig/moteus_frame.hpp"
 
 namespace stillhand::device_rig::moteus {
@@ -43,5 +42,31 @@ struct Received {
 
 /// @param checked  a checksum is required
 Received read_line(std::string_view line, bool checked) noexcept;
+
+/// Bytes of a serial port to lines, without allocation.  A line that is too long is dropped up to
+/// its end.
+class LineSplitter {
+ public:
+  /// Calls `on_line(std::string_view)` for each line that the bytes complete.
+  template <typename OnLine>
+  void take(std::string_view bytes, OnLine&& on_line) noexcept {
+    for (const char c : bytes) {
+      if (c == '\n' || c == '\r') {
+        if (!overrun_ && size_ > 0) on_line(std::string_view(line_.data(), size_));
+        overrun_ = false;
+        size_ = 0;
+      } else if (size_ < line_.size()) {
+        line_[size_++] = c;
+      } else {
+        overrun_ = true;
+      }
+    }
+  }
+
+ private:
+  std::array<char, 256> line_{};
+  std::size_t size_ = 0;
+  bool overrun_ = false;
+};
 
 }  // namespace stillhand::device_rig::moteus

@@ -5,7 +5,8 @@
 #include <array>
 
 #include "services/core/contract/config_error.hpp"
-#include "services/core/device_rig/drive_protocols.hpp"
+#include "services/core/device_rig/moteus_can.hpp"
+#include "services/core/device_rig/moteus_protocol.hpp"
 #include "services/core/device_rig/parts.hpp"
 #include "services/files/settings/placed_error.hpp"
 #include "services/system/process/clock.hpp"
@@ -26,6 +27,14 @@ constexpr double kSlowest_ms = 10.0;
 constexpr int kTrips = 5;
 constexpr std::int64_t kPollEach_ns = 10 * kMs_ns;
 constexpr int kWait_ms = 100;
+
+// The protocol of the drive that the settings name.  A new drive is a branch here and in port_of().
+std::unique_ptr<DriveProtocol> protocol_of(const DriveConfig& config, const SettingLimits& limits) {
+  if (drive_of(config) == Parts::Drive::kMoteusCan) {
+    return std::make_unique<moteus::MoteusCan>(config, limits);
+  }
+  return std::make_unique<moteus::MoteusLines>(config, limits);
+}
 
 std::unique_ptr<runtime::Port> port_of(const DriveConfig& config) {
   if (drive_of(config) == Parts::Drive::kMoteusCan) {

@@ -29,7 +29,7 @@ struct DriveSample {
   std::uint64_t unsent = 0;   ///< commands that were too old, or that the port did not take
 };
 
-/// A drive behind a port, in a thread of its own; core/drive_protocols has its language.  The loop
+/// A drive behind a port, in a thread of its own; DriveProtocol is its language.  The loop
 /// only stores a demand and takes the newest sample: no lock, no allocation, one system call.  The
 /// thread sends each demand once and none by itself, so a loop that stops stops the drive (its
 /// watchdog).  A demand that is older than 5 ms is not sent.

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
         cli.add_flag("--headless", headless, "no window");
-        cli.add_option("--video", screen.video, "write the screen to this .avi or .mp4 file");
+        cli.add_option("--video", screen.video, "write the screen to this .avi file");
         cli.add_flag("--pointer", screen.pointer, "a person tracks with the mouse over the window");
         cli.add_option(
             "--gamepad", screen.gamepad,

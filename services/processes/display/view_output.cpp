@@ -9,8 +9,6 @@
 #include <cstring>
 #include <filesystem>
 #include <opencv2/highgui.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "services/core/contract/config_error.hpp"
 
@@ -18,15 +16,6 @@ namespace stillhand::display {
 namespace {
 
 constexpr int kEscapeKey = 27;
-
-std::string ending_of(const std::string& path) {
-  return std::filesystem::path(path).extension().string();
-}
-
-int codec_of(const std::string& path) {
-  return ending_of(path) == ".avi" ? cv::VideoWriter::fourcc('M', 'J', 'P', 'G')
-                                   : cv::VideoWriter::fourcc('m', 'p', '4', 'v');
-}
 
 void check_rate(double rate_hz) {
   if (!(rate_hz >= 1.0 && rate_hz <= 240.0)) {
@@ -91,53 +80,31 @@ class AbortAsRefusal {
 
 }  // namespace
 
-struct FrameFile::Video {
-  cv::VideoWriter writer;
-};
-
-FrameFile::FrameFile(const std::string& path, double rate_hz, int columns, int rows) : path_(path) {
+FrameFile::FrameFile(const std::string& path, double rate_hz, int columns, int rows) {
   check_rate(rate_hz);
-  const std::string ending = ending_of(path);
-  if (ending != ".avi" && ending != ".mp4" && ending != ".png") {
-    throw ConfigError("display.view.file", path, "a name that ends in .avi, .mp4 or .png");
+  if (!path.ends_with(".avi")) {
+    throw ConfigError("display.view.file", path, "a name that ends in .avi");
   }
   // The first bytes show whether the place can be written at all; OpenCV only says "no".
-  const std::string first = ending == ".png" ? numbered(0) : path;
-  std::FILE* probe = std::fopen(first.c_str(), "wb");
+  std::FILE* probe = std::fopen(path.c_str(), "wb");
   if (probe == nullptr) {
     throw ConfigError("display.view.file", path, "a place that can be written");
   }
   std::fclose(probe);
-  if (ending == ".png") return;
-
-  video_ = std::make_unique<Video>();
-  if (!video_->writer.open(path, codec_of(path), rate_hz, cv::Size(columns, rows), true)) {
+  const int codec = cv::VideoWriter::fourcc('M', 'J', 'P', 'G');
+  if (!video_.open(path, codec, rate_hz, cv::Size(columns, rows), true)) {
     std::filesystem::remove(path);
-    throw ConfigError("display.view.file", path,
-                      "a format whose codec this system has; .avi needs none beyond OpenCV");
+    throw ConfigError("display.view.file", path, "an OpenCV that writes Motion JPEG");
   }
-}
-
-FrameFile::~FrameFile() = default;
-
-std::string FrameFile::numbered(std::int64_t frame) const {
-  char number[32];
-  std::snprintf(number, sizeof number, "_%06lld.png", static_cast<long long>(frame));
-  return path_.substr(0, path_.size() - ending_of(path_).size()) + number;
 }
 
 bool FrameFile::write(const cv::Mat& frame) {
   try {
-    if (video_) {
-      video_->writer.write(frame);
-    } else if (!cv::imwrite(numbered(frames_), frame)) {
-      return false;
-    }
+    video_.write(frame);
+    return true;
   } catch (const cv::Exception&) {
     return false;
   }
-  ++frames_;
-  return true;
 }
 
 ScreenWindow::ScreenWindow(const std::string& title, const Projection& projection, bool full_screen)

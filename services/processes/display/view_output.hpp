@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <memory>
 #include <opencv2/core/mat.hpp>
+#include <opencv2/videoio.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,35 +12,21 @@
 
 namespace stillhand::display {
 
-/// Where frames are kept: a video, or numbered images, by the name's ending.
-///
-///   .avi  Motion JPEG          .mp4  MPEG-4 part 2
-///   .png  one file a frame: "screen.png" gives screen_000000.png, screen_000001.png, ...
-///
-/// Thread-compatible.
+/// A video of the frames, in Motion JPEG.  Thread-compatible.
 class FrameFile {
  public:
+  /// @param path     ends in .avi
   /// @param rate_hz  frames a second, 1 to 240
   /// @throws stillhand::ConfigError when the ending is another, the folder isn't writable or the
   ///         codec is missing.
   FrameFile(const std::string& path, double rate_hz, int columns, int rows);
-  ~FrameFile();
-  FrameFile(const FrameFile&) = delete;
-  FrameFile& operator=(const FrameFile&) = delete;
 
   /// @param frame  BGR, 8 bit, of the announced size
-  /// @return false when it could not be written, for example on a full disk.
+  /// @return false when it could not be written
   [[nodiscard]] bool write(const cv::Mat& frame);
-  [[nodiscard]] std::int64_t frames() const noexcept { return frames_; }
 
  private:
-  struct Video;
-
-  [[nodiscard]] std::string numbered(std::int64_t frame) const;
-
-  std::string path_;
-  std::unique_ptr<Video> video_;  ///< null for numbered images
-  std::int64_t frames_ = 0;
+  cv::VideoWriter video_;
 };
 
 /// A place on the screen [m]: x right of its centre, y up from it.

@@ -29,7 +29,6 @@ class ArmingTest : public testing::Test {
     Arming::Output out{};
     for (int i = 0; i < 60 && out.stage != Stage::kFaulted; ++i) out = step();
     EXPECT_EQ(out.stage, Stage::kFaulted);
-    EXPECT_TRUE(out.newly_faulted);
     EXPECT_EQ(out.order, Order::kStop);
     EXPECT_EQ(out.reason, reason);
   }

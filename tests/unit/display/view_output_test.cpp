@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "services/core/contract/config_error.hpp"
@@ -31,21 +30,6 @@ class FrameFileTest : public ::testing::Test {
  private:
   const support::Folder folder_;
 };
-
-TEST_F(FrameFileTest, NumberedImagesHoldTheFramesBitForBit) {
-  FrameFile sut(path("screen.png"), 60.0, kColumns, kRows);
-  std::vector<cv::Mat> frames;
-  for (int i = 0; i < 3; ++i) {
-    frames.push_back(view_.draw({0.01 * i, 0.0, true, kGood}, {}).clone());
-    ASSERT_TRUE(sut.write(frames.back()));
-  }
-  EXPECT_EQ(sut.frames(), 3);
-  for (int i = 0; i < 3; ++i) {
-    const cv::Mat read = cv::imread(path("screen_00000" + std::to_string(i) + ".png"));
-    ASSERT_FALSE(read.empty());
-    EXPECT_EQ(cv::norm(read, frames[static_cast<std::size_t>(i)], cv::NORM_INF), 0.0);
-  }
-}
 
 // Motion JPEG loses detail: quality 95 leaves a few levels of mean error, far below the 30 or so
 // that another frame, with its box elsewhere, would make over the lines' own area.
@@ -74,18 +58,9 @@ TEST_F(FrameFileTest, AVideoPlaysTheFramesBack) {
 
 TEST_F(FrameFileTest, WhatCannotBeWrittenIsRefusedBeforeTheRun) {
   EXPECT_THROW(FrameFile("/nonexistent/screen.avi", 60.0, kColumns, kRows), ConfigError);
-  EXPECT_THROW(FrameFile("/nonexistent/screen.png", 60.0, kColumns, kRows), ConfigError);
   EXPECT_THROW(FrameFile(path("screen.gif"), 60.0, kColumns, kRows), ConfigError);
   EXPECT_THROW(FrameFile(path("screen.avi"), 0.0, kColumns, kRows), ConfigError);
   EXPECT_FALSE(std::filesystem::exists(path("screen.gif")));
-}
-
-TEST_F(FrameFileTest, AFolderThatGoesAwayIsReported) {
-  std::filesystem::create_directory(path("gone"));
-  FrameFile sut(path("gone/screen.png"), 60.0, kColumns, kRows);
-  std::filesystem::remove_all(path("gone"));
-  EXPECT_FALSE(sut.write(view_.draw({0.0, 0.0, true, kGood}, {})));
-  EXPECT_EQ(sut.frames(), 0);
 }
 
 TEST(ScreenWindowTest, WithoutADisplayItIsRefusedInsteadOfEndingTheProcess) {
