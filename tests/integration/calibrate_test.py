@@ -249,7 +249,7 @@ class CalibrateTest(LabTestCase):
             self.assertEqual(rig.returncode, 2)
             return rig.stderr.read().strip()
 
-    def test_after_a_good_check_a_session_refuses_another_sign_ratio_or_lever(self):
+    def test_after_a_good_check_a_session_refuses_another_sign_or_lever(self):
         self.other_rig(body=self.SOFT)
         status, said, errors = self.calibrate("check", "", list(self.STEPS))
         self.assertEqual((status, errors), (0, ""), said)
@@ -272,7 +272,6 @@ class CalibrateTest(LabTestCase):
         plain = {devices: devices.read_text(), rig: rig.read_text()}
         for file, text, record, name in (
                 (devices, "drive:\n  torque_sign: -1\n", "check", "torque sign -1"),
-                (devices, "drive:\n  ratio: 2\n", "check", "ratio 2"),
                 (devices, "drive:\n  angle_sign: -1\n", "angle", "encoder, sign -1"),
                 (rig, "stick:\n  lever_m: 0.12\n", "check", "lever 0.12 m")):
             with self.subTest(name):
