@@ -21,6 +21,8 @@ report::Figure figure_over_time(const Evidence& evidence);
 report::Figure figure_spectra(const Evidence& evidence);
 /// With the bounds of white noise.
 report::Figure figure_autocorrelation(const Evidence& evidence);
+/// Coherence of the residual with every channel; only where it was computed.
+report::Figure figure_coherence(const Evidence& evidence);
 /// Output, residual and noise at excited, odd and even lines; only where the excitation is
 /// periodic.
 report::Figure figure_lines(const Evidence& evidence);

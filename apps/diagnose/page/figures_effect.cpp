@@ -100,6 +100,9 @@ std::vector<report::Figure> diagnosis_figures(const Evidence& evidence) {
   for (std::size_t e = 0; e < effects; ++e) figures.push_back(figure_effect(evidence, e));
   figures.push_back(figure_over_time(evidence));
   figures.push_back(figure_autocorrelation(evidence));
+  if (evidence.found.before.coherence.independent_averages > 0.0) {
+    figures.push_back(figure_coherence(evidence));
+  }
   if (evidence.found.before.lines && !evidence.found.before.lines->excited.empty()) {
     figures.push_back(figure_lines(evidence));
   }
@@ -109,7 +112,8 @@ std::vector<report::Figure> diagnosis_figures(const Evidence& evidence) {
 std::vector<std::string> figure_names() {
   std::vector<std::string> names{"prediction", "residual_spectra"};
   for (std::size_t e = 0; e < kMostEffectFigures; ++e) names.push_back(effect_figure_name(e));
-  names.insert(names.end(), {"residual_over_time", "autocorrelation", "detection_lines"});
+  names.insert(names.end(), {"residual_over_time", "autocorrelation", "partial_coherence",
+                             "detection_lines"});
   return names;
 }
 

@@ -109,7 +109,8 @@ TEST_F(DiagnosisReportTest, EverySectionAndFigureIsThere) {
     EXPECT_THAT(with_friction_->html, HasSubstr(part));
   }
   for (const char* name :
-       {"prediction", "residual_spectra", "effect_1", "residual_over_time", "autocorrelation"}) {
+       {"prediction", "residual_spectra", "effect_1", "residual_over_time",
+                           "autocorrelation", "partial_coherence"}) {
     for (const std::string& file : report::figure_files(name)) {
       EXPECT_TRUE(std::filesystem::exists(with_friction_->folder.path() / file)) << file;
     }
@@ -118,7 +119,7 @@ TEST_F(DiagnosisReportTest, EverySectionAndFigureIsThere) {
         std::string::npos)
         << name;
   }
-  EXPECT_THAT(with_friction_->html, HasSubstr("Figure 5."));
+  EXPECT_THAT(with_friction_->html, HasSubstr("Figure 6."));
   EXPECT_TRUE(
       report::test::well_formed(with_friction_->html.substr(with_friction_->html.find("<html"))));
 }
