@@ -19,6 +19,7 @@
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/text.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/files/settings/check_number.hpp"
 
 namespace stillhand::calibrate {
 namespace {
@@ -38,18 +39,18 @@ void add_measures(CLI::App& calibrate, CalibrateOptions& options) {
   calibrate
       .add_option("--seconds", options.seconds,
                   "force, acceleration, angle: time for which each step is read [s]")
-      ->check(CLI::Range(0.1, 60.0))
+      ->check(settings::number_between(0.1, 60.0))
       ->capture_default_str();
   calibrate
       .add_option("--tolerance", options.tolerance,
                   "force, acceleration, angle: largest distance from the straight line, and "
                   "largest drift, as a share of the largest quantity; more is refused [-]")
-      ->check(CLI::Range(0.0001, 0.5))
+      ->check(settings::number_between(0.0001, 0.5))
       ->capture_default_str();
   calibrate
       .add_option("--motion", options.motion_m,
                   "platform: largest distance from where it stands [m]")
-      ->check(CLI::Range(0.001, 0.1))
+      ->check(settings::number_between(0.001, 0.1))
       ->capture_default_str();
   calibrate
       .add_option("--periods", options.periods, "platform: periods of 2 s that are measured [-]")
@@ -58,10 +59,10 @@ void add_measures(CLI::App& calibrate, CalibrateOptions& options) {
   calibrate
       .add_option("--push", options.push_n,
                   "check: weight that you hang on the cord, and largest force of the motor [N]")
-      ->check(CLI::Range(0.2, 5.0))
+      ->check(settings::number_between(0.2, 5.0))
       ->capture_default_str();
   calibrate.add_option("--step", options.step_m, "check: step of the platform [m]")
-      ->check(CLI::Range(0.0005, 0.01))
+      ->check(settings::number_between(0.0005, 0.01))
       ->capture_default_str();
 }
 

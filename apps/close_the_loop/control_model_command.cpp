@@ -90,6 +90,11 @@ int run(const ControlModelArguments& arguments) {
   const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);
   const diagnosis::Signals signals(factor == 1 ? whole : diagnosis::decimated(whole, factor),
                                    model.inputs, model.output);
+  if (signals.output().unit != "N") {
+    throw ConfigError(arguments.model.string(),
+                      fmt::format("a model of {} [{}]", model.output, signals.output().unit),
+                      "one of a force in N, which the motor takes away");
+  }
   ControlOptions options;
   options.lead_s = 1e-3 * arguments.lead_ms;
   ConvertedModel control = to_control_model(carried, signals, options);

@@ -134,6 +134,19 @@ ordered_json round_json(const Round& round, bool kept) {
   return json;
 }
 
+// What is worse with C+ than with C', with an interval above 0.
+std::string harm_text(const Conditions& conditions) {
+  std::string text;
+  for (const Number& number : kNumbers) {
+    if (!number.lower_is_better || !has("C'", number)) continue;
+    const Estimate rise = change(conditions, "C'", "C+", number);
+    if (!rise.interval95 || rise.interval95->first <= 0.0) continue;
+    text += fmt::format("{}{} by {}", text.empty() ? " C+ is worse than C' in " : ", ",
+                        number.title, with_interval(rise, number.decimals + 1));
+  }
+  return text.empty() ? text : text + ".";
+}
+
 }  // namespace
 
 ordered_json prediction_json(const Verdict& verdict) {
@@ -300,12 +313,12 @@ std::string kept_text(const LoopRecord& record) {
   return fmt::format(
       "C+ is {}: over {} repeat{} that no fit has seen, C+ less C is {} and C+ less C' is {} in "
       "{}{}. "
-      "The canceller gets the model of {}.",
+      "The canceller gets the model of {}.{}",
       decision.kept() ? "kept" : "not kept", repeats, repeats == 1 ? "" : "s",
       with_interval(decision.over_c, decimals), with_interval(decision.over_c_prime, decimals),
       decision.measure->title,
       decision.certain() ? ", and both intervals exclude 0" : ", as far as these repeats show",
-      decision.model_of);
+      decision.model_of, harm_text(record.conditions));
 }
 
 std::string with_interval(const Estimate& estimate, int decimals, double factor) {

@@ -159,6 +159,9 @@ class Dashboard {
 
   // The outcome of a request of the page.
   Outcome act(std::string_view path, const std::string& text) {
+    if (path == "/acknowledge" && run_) {
+      return {Outcome::Kind::kRefused, "alarms of a recording cannot be acknowledged"};
+    }
     if (path == "/acknowledge") {
       const Outcome noted = remote_ ? remote_->note("alarms acknowledged") : Outcome{};
       if (noted.kind == Outcome::Kind::kDone) feed().acknowledge();

@@ -5,9 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/working_set.hpp"
+#include "services/core/identification/record.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -25,6 +28,31 @@ std::vector<std::string> names_of(const BrokenTie& tie, const std::vector<Eigen:
   return names;
 }
 
+// Candidates that all fail differ in how they fail, with much evidence: another person,
+// another rig, a unit or a sign that changed.
+void check_explained(const next_run::Contest& contest, const diagnosis::Measurement& run) {
+  constexpr double kLeast_percent = 50.0;
+  const std::vector<double>& output = run.find(contest.candidates().front().model.output)->values;
+  double best_percent = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < contest.candidates().size(); ++i) {
+    best_percent =
+        std::max(best_percent, identification::vaf_percent(output, contest.prediction(i, run)));
+  }
+  if (best_percent >= kLeast_percent) return;
+  throw ConfigError("--plan",
+                    fmt::format("a run of which no candidate explains half (at best {:.0f} % of "
+                                "the variance)",
+                                best_percent),
+                    "the run of the plan, of the same rig and person, in the same units");
+}
+
+void check_length(const next_run::PlanFile& plan, const diagnosis::Measurement& run) {
+  const double length_s = static_cast<double>(run.size()) / run.rate_hz;
+  if (length_s >= 0.5 * plan.seconds) return;
+  throw ConfigError("--plan", fmt::format("a run of {:.3g} s", length_s),
+                    fmt::format("most of the {:.3g} s that were planned", plan.seconds));
+}
+
 // Of those that no other one beats, the one with the most evidence against the first.
 Eigen::Index leader_of(const next_run::Evidence& evidence) {
   return std::ranges::max(evidence.left(), {},
@@ -38,7 +66,11 @@ BrokenTie broken_tie(const next_run::PlanFile& plan, const diagnosis::Measuremen
   const diagnosis::Model& model = plan.candidates.front().model;
   const diagnosis::Signals signals(at_rate(before, model.rate_hz), model.inputs, model.output);
   const next_run::Contest contest(plan.candidates, signals);
-  return {contest.candidates(), contest.before(), contest.with(at_rate(run, model.rate_hz))};
+  const diagnosis::Measurement made = at_rate(run, model.rate_hz);
+  check_length(plan, made);
+  BrokenTie tie{contest.candidates(), contest.before(), contest.with(made)};
+  check_explained(contest, made);
+  return tie;
 }
 
 std::string tie_table(const BrokenTie& tie) {

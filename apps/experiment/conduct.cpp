@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "apps/experiment/session_script.hpp"
+#include "apps/lab/check_options.hpp"
 #include "apps/lab/lab.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/system/process/remark.hpp"
@@ -130,6 +131,7 @@ int conduct_planned(const Folder& folder, std::size_t index, const std::filesyst
   set_session(folder, index, progress.sessions(), lab);
   lab::take_plan(plan, lab);
   lab.out = folder.next_planned(index);
+  static_cast<void>(lab::check_options(lab));  // the journal has what began
   const std::string name = "planned " + lab.out.filename().string();
   lab.experiment.session = name;
   journal.append({.kind = EntryKind::kNote,

@@ -18,6 +18,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/files/identification/model_file.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/files/settings/check_number.hpp"
 
 namespace stillhand::identify {
 namespace {
@@ -132,7 +133,7 @@ void add_identify_command(CLI::App& cli, int& status) {
       "feedthrough of the free stick with 95 % bands, and a physical model of the arm");
   verb->add_option("--lever-m", arguments->lever_m,
                    "with --admittance: distance from hand to pivot [m]")
-      ->check(CLI::Range(0.02, 0.5))
+      ->check(settings::number_between(0.02, 0.5))
       ->capture_default_str();
   verb->add_option("--picture", arguments->picture, "with --admittance: PNG file for the responses")
       ->check(settings::check_name);

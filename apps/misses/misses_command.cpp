@@ -21,6 +21,7 @@
 #include "apps/libraries/session/misses_json.hpp"
 #include "apps/libraries/session/session_recording.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/files/settings/check_number.hpp"
 #include "services/system/process/remark.hpp"
 
 namespace stillhand::misses {
@@ -131,7 +132,7 @@ void add_misses_command(CLI::App& cli, int& status) {
       "stillhand misses run1/session.mcap --picture late.svg");
   verb->add_option("FILE", arguments->recording, "recording of a session (MCAP)")->required();
   verb->add_option("--least-ms", arguments->least_ms, "shortest lateness that is listed [ms]")
-      ->check(CLI::Range(1.0, 1e4))
+      ->check(settings::number_between(1.0, 1e4))
       ->capture_default_str();
   verb->add_flag("--why", arguments->why,
                  "also what the kernel knows: no processor, a signal, work, memory from a disk");

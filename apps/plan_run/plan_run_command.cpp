@@ -25,6 +25,7 @@
 #include "services/core/motion/motion_generator.hpp"
 #include "services/files/next_run/plan_file.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/files/settings/check_number.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/system/process/run_jobs.hpp"
 #include "services/system/process/shipped.hpp"
@@ -156,7 +157,7 @@ void add_plan_run_command(CLI::App& cli, int& status) {
       "stillhand plan-run run1/session.mcap --seconds 30 --out next");
   diagnose::add_recordings(*verb, arguments->recordings, arguments->read, arguments->options);
   verb->add_option("--seconds", arguments->seconds, "length of the run [s]")
-      ->check(CLI::Range(5.0, kLongest_s))
+      ->check(settings::number_between(5.0, kLongest_s))
       ->capture_default_str();
   verb->add_option("--out", arguments->out, "folder for ride.csv, plan.json and plan.svg")
       ->required()

@@ -8,8 +8,8 @@
 #include "apps/record/record.hpp"
 #include "services/bus/recording/keep_options.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/files/recording/within.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/files/settings/check_number.hpp"
 #include "services/files/settings/repeatable.hpp"
 #include "services/system/process/clock.hpp"
 #include "services/system/process/real_time.hpp"
@@ -84,15 +84,15 @@ void add_record_command(CLI::App& cli, int& status) {
   settings::repeatable(verb->add_option(
       "--idl", options.idl, "IDL file with types that the bus does not describe; may be repeated"));
   verb->add_option("--duration", arguments->duration_s, "end after this time [s]")
-      ->check(recording::within(0.001, kMostSeconds));
+      ->check(settings::number_between(0.001, kMostSeconds));
   verb->add_option("--rotate-s", arguments->rotate_s, "continue in a new file after this time [s]")
-      ->check(recording::within(0.1, kMostSeconds));
+      ->check(settings::number_between(0.1, kMostSeconds));
   verb->add_option("--rotate-mb", arguments->rotate_mb,
                    "continue in a new file after this size [MB]")
-      ->check(recording::within(0.1, kMostMb));
+      ->check(settings::number_between(0.1, kMostMb));
   verb->add_option("--window", arguments->window_s,
                    "event window: keep the last seconds in memory and write them at a trigger [s]")
-      ->check(recording::within(0.1, 3600.0));
+      ->check(settings::number_between(0.1, 3600.0));
   settings::repeatable(
       verb->add_option("--trigger", options.triggers,
                        "write the window when a field crosses a threshold: TOPIC.FIELD>VALUE or "

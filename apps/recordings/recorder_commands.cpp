@@ -19,6 +19,7 @@
 #include "apps/recordings/recover.hpp"
 #include "apps/recordings/ros2_bag.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/core/recording/csv.hpp"
 #include "services/core/recording/mcap/compression.hpp"
 #include "services/core/recording/mcap/mcap_loss.hpp"
 #include "services/files/recording/file_io.hpp"
@@ -172,14 +173,19 @@ int run_ros2_bag(const ExportArguments& arguments, const Stopped& stopped) {
 
 // The channels of lateness, one table of the whole session.
 int run_lateness(const ExportArguments& arguments) {
-  const report::ResultFiles checked({{"--lateness", arguments.lateness}}, {arguments.recording});
-  const recording::Recording rows =
-      session::lateness_channels(session::read_session(arguments.recording));
+  report::ResultFiles files({{"--lateness", arguments.lateness}}, {arguments.recording});
+  const session::SessionRecording recorded = session::read_session(arguments.recording);
+  if (!recorded.damage.empty()) {
+    runtime::remark(fmt::format("{}: damaged in {} places, and what was lost counts as late: {}",
+                                arguments.recording, recorded.damage.size(),
+                                recorded.damage.front()));
+  }
+  const recording::Recording rows = session::lateness_channels(recorded);
   if (rows.row_count() == 0) {
     throw ConfigError(arguments.recording, "no step of a rig", "the recording of a session");
   }
-  const recording::Status status = recording::write_csv(arguments.lateness.string(), rows);
-  if (!status.ok()) throw std::runtime_error(status.text);
+  files.set("--lateness", recording::to_csv(rows));
+  files.publish();
   fmt::print("{}: {} rows of {} channels\n", arguments.lateness.string(), rows.row_count(),
              rows.columns.size());
   return 0;
@@ -196,6 +202,10 @@ int run_export(const ExportArguments& arguments) {
     throw ConfigError("export", "no format",
                       "--csv DIR, --mat FILE, --hdf5 FILE, --ros2bag FILE or --lateness FILE");
   }
+  // Two outputs of one name, before the work.
+  const report::ResultFiles checked(
+      {{"--mat", options.mat}, {"--hdf5", options.hdf5}, {"--lateness", arguments.lateness}},
+      {arguments.recording});
   const Exported exported = export_recording(arguments.recording, options);
   fmt::print("{:<40} {:>12} {:>9}\n", "table", "rows", "columns");
   for (const ExportedTopic& topic : exported.topics) {

@@ -7,7 +7,7 @@
 
 #include "apps/replay/replay.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/files/recording/within.hpp"
+#include "services/files/settings/check_number.hpp"
 #include "services/files/settings/repeatable.hpp"
 #include "services/system/process/clock.hpp"
 #include "services/system/process/real_time.hpp"
@@ -83,16 +83,16 @@ void add_replay_command(CLI::App& cli, int& status) {
                        "RECORDED=WRITTEN: write a topic under another name; may be repeated"));
   verb->add_option("--start", arguments->start_s,
                    "begin at this time [s] after the recording's start")
-      ->check(recording::within(0.0, kMostSeconds));
+      ->check(settings::number_between(0.0, kMostSeconds));
   verb->add_option("--end", arguments->end_s, "end at this time [s] after the recording's start")
-      ->check(recording::within(0.0, kMostSeconds));
+      ->check(settings::number_between(0.0, kMostSeconds));
   verb->add_flag("--loop", options.loop, "play again from the start when the end is reached");
   verb->add_flag("--paused", options.begin_paused, "begin paused");
   settings::repeatable(
       verb->add_option("--wait-for", options.wait_for,
                        "topic that must have a reader before the replay begins; may be repeated"));
   verb->add_option("--wait-seconds", arguments->wait_s, "longest wait of --wait-for [s]")
-      ->check(recording::within(0.0, kMostSeconds))
+      ->check(settings::number_between(0.0, kMostSeconds))
       ->capture_default_str();
   verb->add_option("--remote", arguments->remote,
                    "do not play; send this to the replay of the domain; or \"seek S\", \"rate R\", "

@@ -10,7 +10,7 @@
 #include "apps/libraries/ros2/converter.hpp"
 #include "apps/ros2_bridge/ros2_bridge.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/files/recording/within.hpp"
+#include "services/files/settings/check_number.hpp"
 #include "services/files/settings/repeatable.hpp"
 #include "services/system/process/domain.hpp"
 #include "services/system/process/shipped.hpp"
@@ -51,11 +51,11 @@ void add_ros2_bridge_command(CLI::App& cli, int& status) {
   verb->add_flag("--replay", options->replay,
                  "publish what `stillhand replay` plays, in the place of a session");
   verb->add_option("--domain", options->domain, "DDS domain of the session")
-      ->check(recording::within(0.0, runtime::kMaxDomain))
+      ->check(settings::number_between(0.0, runtime::kMaxDomain))
       ->capture_default_str();
   verb->add_option("--ros-domain", options->ros_domain, "domain of ROS 2")
       ->envname("ROS_DOMAIN_ID")
-      ->check(recording::within(0.0, runtime::kMaxDomain))
+      ->check(settings::number_between(0.0, runtime::kMaxDomain))
       ->capture_default_str();
   settings::repeatable(verb->add_option("--ros-address", options->addresses,
                                         "address of this machine on which ROS 2 is reached, "

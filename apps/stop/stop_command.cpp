@@ -6,6 +6,7 @@
 
 #include "apps/stop/stop.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/files/settings/check_number.hpp"
 #include "services/system/process/shipped.hpp"
 
 namespace stillhand::stop {
@@ -27,7 +28,7 @@ void add_stop_command(CLI::App& cli, int& status) {
                    "folder of keys (deploy/security/make.sh), for a session with keys")
       ->check(settings::check_name);
   stop->add_option("--wait", options->wait_s, "longest wait for the rigs' answers [s]")
-      ->check(CLI::Range(2.0, 60.0))
+      ->check(settings::number_between(2.0, 60.0))
       ->capture_default_str();
   stop->add_option("--profiles", options->profiles, "file with the QoS profiles")
       ->capture_default_str();

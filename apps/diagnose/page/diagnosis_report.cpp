@@ -115,8 +115,8 @@ void add_remainder(Page& page, const Diagnosis& found,
         "The residual depends on none of the quantities that were tested. The engine takes it for "
         "noise.");
   }
-  for (const char* name : {"residual_over_time", "autocorrelation", "partial_coherence",
-                           "detection_lines"}) {
+  for (const char* name :
+       {"residual_over_time", "autocorrelation", "partial_coherence", "detection_lines"}) {
     add_figure(page, drawings, name);
   }
   page.table(detection_table(found));

@@ -115,7 +115,8 @@ report::Figure figure_coherence(const Evidence& evidence) {
                           "after the inputs are removed from both. First panel: the highest value "
                           "of each channel. ") +
               (two ? "Second panel: the channel with the highest value, over frequency. " : "") +
-              "Threshold: chance exceeds it in 1 % of records, corrected for all frequencies and channels, with " +
+              "Threshold: chance exceeds it in 1 % of records, corrected for all frequencies and "
+              "channels, with " +
               report::number(before.independent_averages, 0) +
               " independent averages. A value above it shows that a linear path exists, not how "
               "much the path matters. The verdict does not use it.",

@@ -112,8 +112,8 @@ std::vector<report::Figure> diagnosis_figures(const Evidence& evidence) {
 std::vector<std::string> figure_names() {
   std::vector<std::string> names{"prediction", "residual_spectra"};
   for (std::size_t e = 0; e < kMostEffectFigures; ++e) names.push_back(effect_figure_name(e));
-  names.insert(names.end(), {"residual_over_time", "autocorrelation", "partial_coherence",
-                             "detection_lines"});
+  names.insert(names.end(),
+               {"residual_over_time", "autocorrelation", "partial_coherence", "detection_lines"});
   return names;
 }
 

@@ -89,8 +89,15 @@ recording::Recording lateness_channels(const SessionRecording& session) {
   for (const Channel& channel : kChannels) rows.columns.push_back({channel.name, channel.unit, {}});
   Steps steps(session);
   Tick before = -1;
-  for (const auto& truth : session.rig_truths) {
+  const auto& truths = session.rig_truths;
+  for (std::size_t row = 0; row < truths.size(); ++row) {
+    const auto& truth = truths[row];
     if (truth.tick() <= before) continue;  // delivered twice
+    // Ahead of what comes after it: a damaged number, which would hide the rest.
+    if (row + 1 < truths.size() && truth.tick() > truths[row + 1].tick() &&
+        truths[row + 1].tick() > before) {
+      continue;
+    }
     before = truth.tick();
     rows.time_s.push_back(static_cast<double>(before) * kControlPeriod_s);
     const auto values = steps.step(truth);

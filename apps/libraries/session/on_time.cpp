@@ -107,24 +107,47 @@ std::vector<TickForces> forces_of(const SessionRecording& session, const Trial& 
   return forces;
 }
 
-/// Median of what the recorded predictions differ by from those of the answers, as a share of their
-/// RMS: 0 where the settings are those of the session; a median, since lost samples change some.
-double apart(const SessionRecording& session, const Trial& trial,
-             const std::vector<Answered>& answers) {
-  std::vector<double> predicted_n, differ_n;
+/// Median of what the recorded values differ by from those of the answers, as a share of their RMS;
+/// a median, since lost samples change some.
+template <typename Message, typename Recorded, typename Of>
+double apart(const std::vector<Message>& messages, const Trial& trial,
+             const std::vector<Answered>& answers, Recorded recorded, Of of) {
+  std::vector<double> values, differ;
   auto answer = answers.begin();
-  for (const auto& command : session.motor_commands) {
-    if (!trial.measures(command.tick())) continue;
-    while (answer != answers.end() && answer->tick() < command.tick()) ++answer;
-    if (answer == answers.end() || answer->tick() != command.tick()) continue;
-    predicted_n.push_back(command.predicted_force_n());
-    differ_n.push_back(std::abs(command.predicted_force_n() - answer->answer.predicted_n));
+  for (const Message& message : messages) {
+    if (!trial.measures(message.tick())) continue;
+    while (answer != answers.end() && answer->tick() < message.tick()) ++answer;
+    if (answer == answers.end() || answer->tick() != message.tick()) continue;
+    values.push_back(recorded(message));
+    differ.push_back(std::abs(values.back() - of(answer->answer)));
   }
-  if (differ_n.empty()) return 0.0;
-  const auto middle = differ_n.begin() + static_cast<std::ptrdiff_t>(differ_n.size() / 2);
-  std::ranges::nth_element(differ_n, middle);
-  const double whole_n = rms(predicted_n);
-  return whole_n > 0.0 ? *middle / whole_n : 0.0;
+  if (differ.empty()) return 0.0;
+  const auto middle = differ.begin() + static_cast<std::ptrdiff_t>(differ.size() / 2);
+  std::ranges::nth_element(differ, middle);
+  const double whole = rms(values);
+  return whole > 0.0 ? *middle / whole : 0.0;
+}
+
+/// The settings are not those of the session: of its canceller or its sensors, or, since a command
+/// that is late by some ticks differs by some hundredths, of its motor and the force's limits.
+std::string why_other_settings(const SessionRecording& session, const Trial& trial,
+                               const std::vector<Answered>& answers) {
+  constexpr double kMostPredicted = 0.01;
+  constexpr double kMostForce = 0.1;
+  const double predicted = apart(
+      session.motor_commands, trial, answers,
+      [](const auto& command) { return command.predicted_force_n(); },
+      [](const OnTime::Answer& answer) { return answer.predicted_n; });
+  const double force = apart(
+      session.rig_truths, trial, answers, [](const auto& truth) { return truth.motor_force_n(); },
+      [](const OnTime::Answer& answer) { return answer.forces.on_time_n; });
+  const bool of_the_canceller = predicted > kMostPredicted;
+  if (!of_the_canceller && force <= kMostForce) return {};
+  return fmt::format(
+      "the settings are not those of the session: half of {} {:.0f} % or more apart from the "
+      "recorded ones",
+      of_the_canceller ? "the canceller's predictions are" : "the motor's forces are",
+      100.0 * (of_the_canceller ? predicted : force));
 }
 
 /// Lateral acceleration, and other channels that move by more than a hundredth of it.
@@ -199,7 +222,6 @@ std::optional<std::int32_t> model_in_use(const SessionRecording& session, const 
 
 SplitTrial split_trial(const SessionRecording& session, const Trial& trial,
                        const AnswerConfigs& configs) {
-  constexpr double kMostApart = 0.01;
   if (!knows_the_feedthrough(session, trial)) {
     return {.why = "nobody knows the feedthrough force of a rig of devices"};
   }
@@ -211,10 +233,8 @@ SplitTrial split_trial(const SessionRecording& session, const Trial& trial,
     return {.why = "the recording lacks the model that the motor followed"};
   }
   const std::vector<Answered> answers = answers_to(session, trial, std::move(on_time));
-  if (const double share = apart(session, trial, answers); share > kMostApart) {
-    return {.why = fmt::format("the settings are not those of the session: half of the canceller's "
-                               "predictions are {:.0f} % or more apart from the recorded ones",
-                               100.0 * share)};
+  if (std::string why = why_other_settings(session, trial, answers); !why.empty()) {
+    return {.why = std::move(why)};
   }
   SplitTrial split{force_budget({forces_of(session, trial, answers), motion_of(session, trial)}),
                    ""};

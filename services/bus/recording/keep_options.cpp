@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "services/files/recording/within.hpp"
+#include "services/files/settings/check_number.hpp"
 
 namespace stillhand::recording {
 namespace {
@@ -44,7 +44,7 @@ void add_keep_options(CLI::App& cli, KeepOptions& options) {
   cli.add_option(
          "--min-free-mb", options.min_free_mb,
          "smallest free space on the disk [MB]; below it close the file completely and stop")
-      ->check(within(0.0, kMostMb))
+      ->check(settings::number_between(0.0, kMostMb))
       ->capture_default_str()
       ->group(group);
 }

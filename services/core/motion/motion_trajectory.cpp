@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -48,6 +49,11 @@ Ramp ramp_at(Tick since_start, Tick duration_ticks, Tick ramp_ticks) noexcept {
           60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) * rate_1_s * rate_1_s};
 }
 
+// Of NaN, infinity: std::max would pass it over, and a motion that overflows would look small.
+double magnitude(double value) {
+  return std::isfinite(value) ? std::abs(value) : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 // Eq. MO-7.
@@ -62,15 +68,15 @@ void MotionTrajectory::fill(const MotionSpectrum& spectrum) {
     Row row{p.pos_m, p.vel_m_s, p.accel_m_s2};
     if (i >= ramp_ticks_ && i < ramp_ticks_ + duration_ticks_) {
       sum += p.accel_m_s2 * p.accel_m_s2;
-      report_.peak_m_s2 = std::max(report_.peak_m_s2, std::abs(p.accel_m_s2));
+      report_.peak_m_s2 = std::max(report_.peak_m_s2, magnitude(p.accel_m_s2));
     } else {
       const Ramp r = ramp_at(i, duration_ticks_, ramp_ticks_);
       row = {r.w * p.pos_m, r.w * p.vel_m_s + r.w_s * p.pos_m,
              r.w * p.accel_m_s2 + 2.0 * r.w_s * p.vel_m_s + r.w_s2 * p.pos_m};
     }
-    report_.table_peak_m_s2 = std::max(report_.table_peak_m_s2, std::abs(row.acceleration_m_s2));
-    report_.peak_velocity_m_s = std::max(report_.peak_velocity_m_s, std::abs(row.velocity_m_s));
-    report_.peak_position_m = std::max(report_.peak_position_m, std::abs(row.position_m));
+    report_.table_peak_m_s2 = std::max(report_.table_peak_m_s2, magnitude(row.acceleration_m_s2));
+    report_.peak_velocity_m_s = std::max(report_.peak_velocity_m_s, magnitude(row.velocity_m_s));
+    report_.peak_position_m = std::max(report_.peak_position_m, magnitude(row.position_m));
     table_[static_cast<std::size_t>(i)] = row;
   }
   report_.rms_m_s2 = std::sqrt(sum / static_cast<double>(duration_ticks_));

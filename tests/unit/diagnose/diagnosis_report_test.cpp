@@ -108,8 +108,7 @@ TEST_F(DiagnosisReportTest, EverySectionAndFigureIsThere) {
         "95 % interval", "noise floor", "Numbers of the final model", "candidates", "Holm"}) {
     EXPECT_THAT(with_friction_->html, HasSubstr(part));
   }
-  for (const char* name :
-       {"prediction", "residual_spectra", "effect_1", "residual_over_time",
+  for (const char* name : {"prediction", "residual_spectra", "effect_1", "residual_over_time",
                            "autocorrelation", "partial_coherence"}) {
     for (const std::string& file : report::figure_files(name)) {
       EXPECT_TRUE(std::filesystem::exists(with_friction_->folder.path() / file)) << file;

@@ -113,6 +113,8 @@ TEST(RideTest, RecordsThatCannotBeFollowedAreRefused) {
   profile = ride_of({{5.0, 1000.0}}, 20.0);  // at the highest corner, 8 Hz, still 1000/44 m/s^2
   profile.band_high_hz = 8.0;
   EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
+  profile = ride_of({{3.0, 1.7e308}}, 20.0);  // the spectrum overflows to NaN
+  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
 }
 
 struct Column {

@@ -38,6 +38,19 @@ TEST(BrokenTieTest, ARunWithoutAChannelIsRefused) {
   EXPECT_THROW(static_cast<void>(broken_tie(kPlan, made::measured(3300, 4, 1), run)), ConfigError);
 }
 
+// They would differ by how much each of them fails.
+TEST(BrokenTieTest, ARunThatNoCandidateExplainsBreaksNothing) {
+  auto run = made::measured(2100, 8, 2);
+  for (double& value : run.channels.back().values) value = -value;
+  EXPECT_THROW(static_cast<void>(broken_tie(kPlan, made::measured(3300, 4, 1), run)), ConfigError);
+}
+
+TEST(BrokenTieTest, ARunThatWasCutShortBreaksNothing) {
+  EXPECT_THROW(
+      static_cast<void>(broken_tie(kPlan, made::measured(3300, 4, 1), made::measured(900, 8, 2))),
+      ConfigError);
+}
+
 TEST(BrokenTieTest, APlanWhoseCandidatesAreNotFiniteIsRefused) {
   next_run::PlanFile plan = kPlan;
   for (auto& candidate : plan.candidates) candidate.model.body.numerators = {{1e200}};

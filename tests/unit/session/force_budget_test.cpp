@@ -113,6 +113,11 @@ TEST(ForceBudgetTest, AnUnknownFeedthroughOrModelHasNoneAndWrongSettingsAreFound
   others.sensing.antialias_cutoff_hz = 20.0;
   EXPECT_NE(split_trial(session.recording, session.trial, others).why.find("settings"),
             std::string::npos);
+  others = {};
+  others.cancellation.gain = 0.3;
+  EXPECT_NE(split_trial(session.recording, session.trial, others).why.find("settings"),
+            std::string::npos)
+      << "the prediction is in front of the gain";
   session.recording.rig_truths[kStalledStart + 7].feedthrough_force_n(NAN);
   EXPECT_FALSE(split_trial(session.recording, session.trial, {}).budget);
   session.recording.control_models.clear();
