@@ -128,7 +128,6 @@ class CloseTheLoopTest(LoopCase):
                                 (["--seed", "-4", "--out", self.out], "--seed"),
                                 (["--undeclared-effect", "x", "--out", self.out], "--undeclared-effect"),
                                 ([*SHORT, "--domain", 5, "--out", self.out], "--live"),
-                                ([*SHORT, "--rig", 5, "--out", self.out], "--live"),
                                 ([*SHORT, "--out", recorded], "recording"),
                                 (["--repeats", 0, "--out", self.out], "--repeats"),
                                 (["--repeats", 3, "--live", "--out", self.out], "--live"),

@@ -35,7 +35,7 @@ def tied_recording(file):
 
 
 class PlanRunTest(LabTestCase):
-    def test_a_tie_is_planned_run_and_judged(self):
+    def test_a_tie_is_planned_and_run_and_another_body_breaks_nothing(self):
         recorded, plan = self.folder / "tied.csv", self.folder / "next" / "plan.json"
         tied_recording(recorded)
         said = self.run_verb("plan-run", recorded, "--seconds", SECONDS, "--out", plan.parent).stdout
@@ -56,12 +56,9 @@ class PlanRunTest(LabTestCase):
         self.assertEqual(asked["kind"], "ride")
         self.assertAlmostEqual(asked["peak_m_s2"], planned["motion"]["peak_m_s2"], places=6)
 
-        verdict = self.folder / "verdict.json"
-        self.run_verb("diagnose", recorded, lab.out / "session.mcap", "--plan", plan, "--json", verdict)
-        tie = json.loads(verdict.read_text())["tie"]
-        self.assertTrue(tie["left"])
-        self.assertLessEqual(set(tie["left"]), set(names))
-        self.assertEqual(tie["broken"], len(tie["left"]) == 1)
+        # The rig's body is not that of the tied recording, so neither candidate explains the run: such a run breaks no
+        # tie (tests/unit/next_run has those that do).
+        self.refused_for("no candidate explains half", "diagnose", recorded, lab.out / "session.mcap", "--plan", plan)
         self.assert_nothing_left(lab)
         self.planned_with_a_participant(plan)
 

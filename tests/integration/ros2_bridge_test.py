@@ -175,8 +175,8 @@ class Ros2BridgeTest(Bus):
     def test_what_a_person_can_mend_is_one_line(self):
         for words, want in (
                 (("--topics", "stillhand/sensd"), "--topics: got stillhand/sensd, want one of stillhand/event"),
-                (("--ros-domain", 233), "--ros-domain: got 233, want 0 to 232"),
-                (("--domain", -1), "--domain: got -1, want 0 to 232"),
+                (("--ros-domain", 233), '--ros-domain: got "233", want a number from 0 to 232'),
+                (("--domain", -1), '--domain: got "-1", want a number from 0 to 232'),
                 (("--ros-address", "192.0.2.1"), "--ros-address: got 192.0.2.1, which no interface of this"),
                 (("--profiles", "nowhere.xml"), "QoS profiles: got no file nowhere.xml")):
             self.refused_for(want, "ros2-bridge", *words)

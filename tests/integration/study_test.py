@@ -42,12 +42,12 @@ class StudyTest(FolderCase):
             for row in table.split("<tbody")[1].split("</tbody>")[0].split("<tr")[1:]:
                 self.assertEqual(len(re.findall("<t[dh][ >]", row)), head)
 
-    # Trials of 12 s show that every part works, and nothing about the paper.
-    BRIEF = ["--trial-seconds", "12", "--identify-seconds", "20", "--subjects", "6", "--seed", "5"]
+    # Trials of 30 s show that every part works, and nothing about the paper.
+    BRIEF = ["--trial-seconds", "30", "--identify-seconds", "20", "--subjects", "6", "--seed", "5"]
 
     def test_explain_paper_ranks_every_cause_and_pair(self):
         out = self.folder / "why"
-        self.run_verb("study", "--explain-paper", *self.BRIEF, "--out", out)
+        self.run_verb("study", "--explain-paper", *self.BRIEF, "--trial-seconds", "12", "--out", out)
         found = json.loads((out / "explanation.json").read_text())
         names = [cause["name"] for cause in found["causes"]]
         self.assertEqual(names[:2], ["none", "paper_chain"])
