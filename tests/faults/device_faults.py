@@ -262,7 +262,9 @@ def ended_by(seen, fault):
         return "the drive's watchdog"
     if seen["torque_after_fault_ms"] == 0.0:
         return "the drive itself"
-    return "the host's ramp" if seen["follows"] else "a stop of the host" if seen["mode"] == 0 else f"mode {seen['mode']}"
+    if seen["follows"]:
+        return "the host's ramp"
+    return "a stop of the host" if seen["mode"] == 0 else f"mode {seen['mode']}"
 
 
 def rules(seen):
