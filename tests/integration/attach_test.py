@@ -87,21 +87,22 @@ class AttachTest(LabTestCase):
         self.assertEqual(lab.end_status(), 1)
         self.assertIn("motion ended: its life sign is gone", " ".join(lab.errors()))
 
-    def test_services_that_run_already_hold_a_whole_session_after_one_that_broke(self):
-        self.broken_session()
-        # It says from before the session to its end, as the recorder, which file is the recording: whole_session()
-        # reads what the lab fetched.
-        self.stranger(self.domain, "misleads", "a stranger")
-        self.whole_session("second")
-
-    def test_services_that_run_already_obey_no_stranger_that_conducts_them_first(self):
+    def contested_session(self):
+        """A stranger conducts the services first: the session is refused."""
         stranger = self.stranger(self.domain, "conducts", "a stranger")
         lab = self.lab(*self.words, "--attach", "--match-seconds", 15, domain=self.domain, out=self.folder / "contested")
         self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1)
         self.assertIn("two name the session's sources", " ".join(lab.errors()))
         stranger.kill()
         stranger.wait()
-        self.whole_session("alone")
+
+    def test_services_that_run_already_hold_a_whole_session_after_a_contested_and_a_broken_one(self):
+        self.contested_session()
+        self.broken_session()
+        # It says from before the session to its end, as the recorder, which file is the recording: whole_session()
+        # reads what the lab fetched.
+        self.stranger(self.domain, "misleads", "a stranger")
+        self.whole_session("second")
 
     @campaign
     def test_a_session_after_a_broken_one_gives_what_the_first_one_gave(self):

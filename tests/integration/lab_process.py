@@ -106,8 +106,8 @@ class LabProcess:
     """One `stillhand lab`, ended with everything it started by close()."""
 
     def __init__(self, out, *arguments, domain=None, program=None, headless=True, environment=None,
-                 before_start=None, start=(), inventory=None):
-        """start: words before the lab's own; inventory: of the lab's machines, on the domain given."""
+                 before_start=None, start=(), inventory=None, typed=subprocess.DEVNULL):
+        """start: words before the lab's own; inventory: of the lab's machines, on the domain given; typed: its input."""
         self.out = pathlib.Path(out)  # "": none given
         self.domain = next_domain() if domain is None else domain
         self._shared_memory_before = shared_memory()
@@ -118,7 +118,7 @@ class LabProcess:
         words += ["--headless"] if headless else []
         words += ["--out", str(out)] if out else []
         # A session of its own: interrupt() reaches the process group, as a terminal's Ctrl-C does.
-        self.process = subprocess.Popen(words + [str(word) for word in arguments], stdin=subprocess.DEVNULL,
+        self.process = subprocess.Popen(words + [str(word) for word in arguments], stdin=typed,
                                         stdout=self._output, stderr=self._errors, start_new_session=True,
                                         env=environment, preexec_fn=before_start)
 

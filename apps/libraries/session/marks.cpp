@@ -62,6 +62,10 @@ const char* what_of(const stillhand_msgs::Event& event) {
   }
 }
 
+double noticed_s(const Mark& mark, const Trial& trial) {
+  return kControlPeriod_s * static_cast<double>(mark.first_tick - trial.start_tick);
+}
+
 }  // namespace
 
 std::string line_of(const Mark& mark) {
@@ -72,16 +76,19 @@ std::string line_of(const Mark& mark) {
   return line;
 }
 
+std::optional<double> model_lost_s(const Mark& mark, const Trial& trial) {
+  if (mark.what != kModelChanged) return std::nullopt;
+  return noticed_s(mark, trial) - mark.worst_us / 1e6;
+}
+
 std::string model_change(const Mark& mark, const Trial& trial) {
-  if (mark.what != kModelChanged) return {};
-  const double noticed_s =
-      kControlPeriod_s * static_cast<double>(mark.first_tick - trial.start_tick);
-  const double since_s = noticed_s - mark.worst_us / 1e6;
-  const std::string when = since_s >= 0.0
-                               ? fmt::format("since {:.0f} s of trial {}", since_s, trial.number)
+  const std::optional<double> since_s = model_lost_s(mark, trial);
+  if (!since_s) return {};
+  const std::string when = *since_s >= 0.0
+                               ? fmt::format("since {:.0f} s of trial {}", *since_s, trial.number)
                                : fmt::format("since before trial {}", trial.number);
   return fmt::format("the model no longer holds {}, {}; noticed at {:.0f} s", when, mark.text,
-                     noticed_s);
+                     noticed_s(mark, trial));
 }
 
 Mark mark_of(const stillhand_msgs::Event& event) {

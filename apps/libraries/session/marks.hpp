@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,10 @@ struct Mark {
 Mark mark_of(const stillhand_msgs::Event& event);
 /// One line for a person.
 std::string line_of(const Mark& mark);
-/// Of a mark that says that the canceller's model no longer holds: since when, as one clause; empty
-/// of every other mark.
+/// [s] of the trial since when the canceller's model no longer holds, below 0 before the trial;
+/// none: the mark says nothing of it.
+std::optional<double> model_lost_s(const Mark& mark, const Trial& trial);
+/// The same as one clause; empty of every other mark.
 std::string model_change(const Mark& mark, const Trial& trial);
 /// Adds a mark, or counts it with the one that is the same.
 void add_mark(std::vector<Mark>& marks, const Mark& mark);

@@ -88,12 +88,24 @@ void judge_use(const SessionRecording& session, const Trial& trial, TrialResult&
   result.sensor_to_force = latency_of(std::move(late_us), 0.0);
 }
 
+std::optional<double> model_lost_s(const TrialOutcome& outcome) {
+  for (const Mark& mark : outcome.marks) {
+    if (const auto since_s = model_lost_s(mark, outcome.planned.trial)) return since_s;
+  }
+  return std::nullopt;
+}
+
 Excerpt excerpt_of(const std::vector<double>& feedthrough_n, const std::vector<double>& motor_n,
-                   const identification::TrackingRecord& record) {
+                   const identification::TrackingRecord& record, std::optional<double> lost_s) {
   constexpr auto kTicks = static_cast<std::size_t>(12.0 * kControlRateHz);
   constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / 100.0);
+  constexpr double kBefore_s = 5.0;
+  const std::size_t size = feedthrough_n.size();
+  const std::size_t latest = size - std::min(kTicks, size);
+  const double first_s = std::max(lost_s.value_or(0.0) - kBefore_s, 0.0);
+  const std::size_t first = std::min(static_cast<std::size_t>(first_s * kControlRateHz), latest);
   Excerpt out;
-  for (std::size_t n = 0; n < std::min(kTicks, feedthrough_n.size()); n += kEvery) {
+  for (std::size_t n = first; n < std::min(first + kTicks, size); n += kEvery) {
     out.time_s.push_back(static_cast<double>(n) * kControlPeriod_s);
     out.feedthrough_n.push_back(feedthrough_n[n]);
     out.motor_n.push_back(motor_n[n]);
@@ -128,7 +140,7 @@ void judge_cancellation(const SessionRecording& session, const PlannedTrial& pla
   if (!planned.moving) return;
   const bool known = is_known(forces.feedthrough_n);
   if (known) result.cancelled_share = cancelled_share(forces.feedthrough_n, forces.motor_n);
-  result.excerpt = excerpt_of(forces.feedthrough_n, forces.motor_n, record);
+  result.excerpt = excerpt_of(forces.feedthrough_n, forces.motor_n, record, result.model_lost_s);
   if (!drives_motor(planned)) return;
   if (known && opposes_feedthrough(planned)) {
     result.counterforce_delay_s =
@@ -147,8 +159,10 @@ double settled_rms_error_mm(const identification::TrackingRecord& record) {
   return rms(error_mm);
 }
 
-TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& planned) {
+TrialResult evaluate_trial(const SessionRecording& session, const TrialOutcome& outcome) {
+  const PlannedTrial& planned = outcome.planned;
   TrialResult result{};
+  result.model_lost_s = model_lost_s(outcome);
   result.number = planned.trial.number;
   result.label = planned.label;
   identification::TrackingRecord record;
@@ -297,7 +311,7 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
       continue;
     }
     if (planned.trial.phase != TrialPhase::kTracking) continue;
-    result.trials.push_back(evaluate_trial(session, planned));
+    result.trials.push_back(evaluate_trial(session, outcome));
     TrialResult& trial = result.trials.back();
     if (answers && planned.cancellation && planned.parts.empty()) {
       trial.budget = split_trial(session, planned.trial, *answers).budget;

@@ -16,7 +16,8 @@
 
 namespace stillhand::session {
 
-/// The first 12 s of a trial at 100 Hz, for a figure.  All arrays are equally long.
+/// 12 s of a trial at 100 Hz, for a figure: the first, or those around the loss of the model.  All
+/// arrays are equally long.
 struct Excerpt {
   std::vector<double> time_s;         ///< from the trial's start
   std::vector<double> feedthrough_n;  ///< f', the force the body would exert with the stick held
@@ -57,7 +58,8 @@ struct TrialResult : TrialNumbers {
   std::optional<Latency> sensor_to_force;
   /// Share of the measured ticks that used the command that answers their own sample; the same.
   std::optional<double> same_tick_share;
-  Excerpt excerpt;  ///< only where the platform moves
+  std::optional<double> model_lost_s;  ///< [s] of the trial: its model no longer held (marks.hpp)
+  Excerpt excerpt;                     ///< only where the platform moves
 };
 
 /// What the model predicts of the pegged trial's true feedthrough force, as residual share

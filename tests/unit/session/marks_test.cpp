@@ -96,8 +96,10 @@ TEST(MarkTest, AModelThatNoLongerHoldsSaysSinceWhen) {
   EXPECT_EQ(model_change(mark_of(event), trial),
             "the model no longer holds since 76 s of trial 1, by 26 % of the predicted force; "
             "noticed at 104 s");
+  EXPECT_NEAR(model_lost_s(mark_of(event), trial).value(), 76.0, 1e-9);
   event.code(stillhand_msgs::CODE_NONE);
   EXPECT_EQ(model_change(mark_of(event), trial), "");
+  EXPECT_FALSE(model_lost_s(mark_of(event), trial));
 }
 
 }  // namespace

@@ -215,6 +215,34 @@ TEST(EvaluateTest, OnlyACounterforceHasADelay) {
   EXPECT_FALSE(delays({{PartKind::kSignal}}));
 }
 
+// 20 s.  Five seconds before the loss are shown, and twelve in all, as far as the trial has them.
+TEST(EvaluateTest, TheExcerptIsAroundTheLossOfTheModel) {
+  constexpr Tick kLong_ticks = 20'000;
+  Tape tape;
+  tape.whole_tracking(kStart, kStart + kLong_ticks, 0.0);
+  for (Tick tick = kStart; tick < kStart + kLong_ticks; ++tick) {
+    tape.truth(tick, static_cast<double>(tick - kStart), 0.0);
+  }
+  const std::string path = tape.close();
+  TrialOutcome outcome = outcome_of(1, Condition::kC, kStart);
+  outcome.planned.trial.duration_ticks = kLong_ticks;
+  const auto begins_s = [&] {
+    const Excerpt sut = evaluate(path, {outcome}).trials.at(0).excerpt;
+    EXPECT_EQ(sut.time_s.size(), 1200u);
+    EXPECT_NEAR(1e-3 * sut.feedthrough_n.front(), sut.time_s.front(), 1e-9);
+    return sut.time_s.front();
+  };
+  EXPECT_EQ(begins_s(), 0.0);
+  for (const auto& [lost_s, first_s] : {std::pair{2.0, 0.0}, {6.0, 1.0}, {19.0, 8.0}}) {
+    stillhand_msgs::Event event;
+    event.code(stillhand_msgs::CODE_MODEL_CHANGED);
+    event.tick(kStart + kLong_ticks - 1);
+    event.by_us(1e6 * (19.999 - lost_s));
+    outcome.marks = {mark_of(event)};
+    EXPECT_NEAR(begins_s(), first_s, 1.5e-3) << lost_s;
+  }
+}
+
 TEST(EvaluateTest, TheCancelledShareIsThePartThatTheMotorRemoves) {
   for (const double share : {0.0, 0.25, 1.0, 1.5}) {
     Tape tape;
