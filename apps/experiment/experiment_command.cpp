@@ -65,20 +65,21 @@ void make(Typed typed) {
   if (typed.conditions != "A,B,C") typed.design.comparisons.clear();
   typed.design.instructions = session::instructions(typed.design.who);
   const bool has_model = !typed.control_model.empty();
-  if (has_model && !std::filesystem::is_regular_file(typed.control_model)) {
-    throw ConfigError("--control-model", typed.control_model.string(), "a file");
+  const bool diagnosed = typed.control_model == kDiagnosed;
+  if (has_model && !diagnosed && !std::filesystem::is_regular_file(typed.control_model)) {
+    throw ConfigError("--control-model", typed.control_model.string(), "a file, or diagnosed");
   }
   const bool wants_model = std::ranges::count(typed.design.conditions, "C+") > 0;
   if (wants_model != has_model) {
     throw ConfigError("--control-model", has_model ? typed.control_model.string() : "nothing",
-                      "a file with condition C+, and none without it");
+                      "a file or diagnosed with condition C+, and none without it");
   }
-  if (has_model) typed.design.control_model = "control_model.json";
+  if (has_model) typed.design.control_model = diagnosed ? kDiagnosed : "control_model.json";
   // As the file would be read: `run` refuses no folder that was made here.
   design_of(yaml_of(typed.design), "the experiment.yaml that these options give");
   make_folder(typed.folder, typed.design, typed.seed ? *typed.seed : random_seed());
-  if (has_model) {
-    std::filesystem::copy_file(typed.control_model, typed.folder / typed.design.control_model);
+  if (const std::string file = typed.design.model_file(); !file.empty()) {
+    std::filesystem::copy_file(typed.control_model, typed.folder / file);
   }
   std::printf("%s: read it, change it, then `stillhand experiment run %s`\n",
               (typed.folder / kDesignFile).c_str(), typed.folder.c_str());
@@ -154,7 +155,8 @@ void add_new(CLI::App& verb, const std::shared_ptr<Typed>& typed) {
       ->capture_default_str();
   sub->add_option("--control-model", typed->control_model,
                   "model of condition C+, copied into the folder; `stillhand close-the-loop` and "
-                  "`stillhand control-model` write such a file")
+                  "`stillhand control-model` write such a file. diagnosed: each session's own, in "
+                  "the pause behind its identification")
       ->check(settings::check_name);
   sub->add_option("--seed", typed->seed,
                   "seed of the orders: the same seed gives the same orders [random]")

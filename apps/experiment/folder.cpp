@@ -105,8 +105,8 @@ Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
                           "the change back, or begin another experiment");
   }
   design_ = design_of(yaml, file.string());
-  if (!design_.control_model.empty() && !participants().empty()) {
-    refuse_changed_model(path_ / design_.control_model, design_.control_model, registered);
+  if (const std::string model = design_.model_file(); !model.empty() && !participants().empty()) {
+    refuse_changed_model(path_ / model, model, registered);
   }
   const std::string sealed = recording::read_file((path_ / kSealedFile).string());
   if (rig::sha256(sealed) != design_.assignment) {
@@ -207,7 +207,7 @@ void Folder::refuse_findings() const {
 
 void Folder::register_design() const {
   std::string lines = digest_line(digest_, kDesignFile);
-  if (const std::string& model = design_.control_model; !model.empty()) {
+  if (const std::string model = design_.model_file(); !model.empty()) {
     const std::string bytes = recording::read_file((path_ / model).string());
     lines += digest_line(rig::sha256(bytes), model);
   }

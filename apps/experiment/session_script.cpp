@@ -9,6 +9,7 @@
 
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/lab/control_model.hpp"
+#include "apps/lab/pause_diagnosis.hpp"
 #include "apps/libraries/measurement/written_trial.hpp"
 #include "apps/libraries/session/instructions.hpp"
 
@@ -46,6 +47,14 @@ bool needs_position(const Design& design) {
   });
 }
 
+// C+ where nothing is known to be missing: the identified model, with a straight line as its curve,
+// which keeps its trials apart from those of C in a recording.
+cancellation::ControlModel without_effect(const identification::FeedthroughModel& identified) {
+  cancellation::ControlModel model = cancellation::control_model(identified.control);
+  model.inputs.at(0).map = {-1.0, 1.0, {-1.0, 1.0}};
+  return model;
+}
+
 }  // namespace
 
 SessionScript::SessionScript(const Folder& folder, std::size_t index, Journal& journal,
@@ -57,7 +66,7 @@ SessionScript::SessionScript(const Folder& folder, std::size_t index, Journal& j
       lab_(lab),
       plan_(folder.plan(index)),
       session_(progress.sessions()) {
-  const std::string& file = folder.design().control_model;
+  const std::string file = folder.design().model_file();
   if (!file.empty()) augmented_ = lab::control_model(folder.path() / file, lab.rig, lab.config);
 }
 
@@ -111,7 +120,7 @@ std::vector<session::PlannedTrial> SessionScript::possible_trials() const {
 }
 
 void SessionScript::run(lab::LiveTrials& trials) {
-  if (!instruct(trials) || !identify(trials)) return;
+  if (!instruct(trials) || !identify(trials) || !diagnose(trials)) return;
   do {
     while (const auto next = progress_.next()) {
       if (!do_step(trials, *next) || !look(trials)) return;
@@ -216,9 +225,31 @@ bool SessionScript::track(lab::LiveTrials& trials, std::size_t number) {
   return run_trial(trials, number, planned_of(plan_[number]));
 }
 
-// C runs the session's own model, C' the same while it follows the hand, C+ that of the file.  A
-// and B get the session's own, which they do not use: who sees the event of a loaded model, or
-// waits for it, learns nothing.
+bool SessionScript::diagnose(lab::LiveTrials& trials) {
+  if (folder_.design().control_model != kDiagnosed) return true;
+  if (with_person()) {
+    lab::Prompt prompt = prompt_of(lab::PromptKind::kInstructions, {});
+    prompt.text = "Please wait.\n";
+    trials.show(prompt);
+  }
+  lab::PauseVerdict verdict = lab::diagnose_in_pause(lab_, trials);
+  if (!look(trials)) return false;
+  try {
+    if (verdict.certain) augmented_ = lab::diagnosed_model(lab_);
+  } catch (const std::exception& error) {
+    verdict = {.why_not = error.what()};
+  }
+  if (!augmented_) augmented_ = without_effect(trials.model());
+  add({.kind = EntryKind::kNote,
+       .text = verdict.certain ? "diagnosis: " + verdict.found
+                               : "diagnosis: the identified model runs in its place: " +
+                                     (verdict.why_not.empty() ? verdict.found : verdict.why_not)});
+  return true;
+}
+
+// C runs the session's own model, C' the same while it follows the hand, C+ that of the file or of
+// the diagnosis.  A and B get the session's own, which they do not use: who sees the event of a
+// loaded model, or waits for it, learns nothing.
 void SessionScript::give_model(lab::LiveTrials& trials, const std::string& condition) {
   cancellation::ControlModel model =
       condition == "C+" ? *augmented_ : cancellation::control_model(trials.model().control);

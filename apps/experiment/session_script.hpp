@@ -53,6 +53,8 @@ class SessionScript {
   /// again before it begins.  @return false: the session ends
   bool run_trial(lab::LiveTrials& trials, std::size_t step, session::PlannedTrial planned);
   void give_model(lab::LiveTrials& trials, const std::string& condition);
+  /// C+ of this session, where the design asks for it.  @return false: the session ends
+  bool diagnose(lab::LiveTrials& trials);
   [[nodiscard]] session::PlannedTrial planned_of(const Step& step) const;
   [[nodiscard]] session::PlannedTrial practice_of(std::int64_t number) const;
   [[nodiscard]] session::PlannedTrial identification() const;

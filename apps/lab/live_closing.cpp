@@ -5,51 +5,20 @@
 
 #include <algorithm>
 #include <exception>
-#include <optional>
 
-#include "apps/lab/control_model.hpp"
-#include "apps/lab/output_folder.hpp"
-#include "apps/lab/processes.hpp"
+#include "apps/lab/pause_diagnosis.hpp"
 #include "apps/lab/typed_line.hpp"
-#include "services/core/contract/tick.hpp"
-#include "services/files/recording/file_io.hpp"
-#include "services/system/process/run_jobs.hpp"
 
 namespace stillhand::lab {
 namespace {
 
-constexpr double kDiagnosis_s = 180.0;
 constexpr double kOffer_s = 30.0;
-constexpr double kDiagnosisEnds_s = 1.0;
 
 bool lost_its_model(const session::TrialOutcome& outcome) {
   return outcome.planned.label == session::Condition::kC &&
          std::ranges::any_of(outcome.marks, [&](const session::Mark& mark) {
            return !session::model_change(mark, outcome.planned.trial).empty();
          });
-}
-
-std::filesystem::path folder_of(const LabOptions& options) { return options.out / kClosingFolder; }
-
-// The verb that a person would start after the session, below every process of the session.
-Launch diagnosis_of(const LabOptions& options) {
-  Launch launch;
-  launch.name = "diagnosis";
-  launch.executable = "nice";
-  launch.log = options.out / "logs" / "closing.log";
-  launch.arguments = {"-n",
-                      "10",
-                      (options.programs / "stillhand").string(),
-                      "close-the-loop",
-                      "--pegged",
-                      (options.out / "session.mcap").string(),
-                      "--rig",
-                      fmt::to_string(options.rig),
-                      "--threads",
-                      fmt::to_string(std::max(1u, runtime::core_count() / 2)),
-                      "--out",
-                      folder_of(options).string()};
-  return launch;
 }
 
 }  // namespace
@@ -74,7 +43,7 @@ bool LiveClosing::close() {
     return true;
   }
   const std::int64_t next = identified.planned.trial.number + 1;
-  const PauseVerdict verdict = diagnose();
+  const PauseVerdict verdict = diagnose_in_pause(options_, trials_);
   if (trials_.interrupted()) return false;
   if (!verdict.why_not.empty()) {
     trials_.say(
@@ -82,26 +51,6 @@ bool LiveClosing::close() {
     return run_again(false);
   }
   return run_again(takes(verdict, next) && give_plus(next));
-}
-
-PauseVerdict LiveClosing::diagnose() {
-  Processes processes;
-  std::optional<Ended> ended;
-  try {
-    processes.start(diagnosis_of(options_));
-    trials_.rest("diagnosis of the identification", kDiagnosis_s, [&] {
-      if (!ended) ended = processes.reap();
-      return ended.has_value();
-    });
-    if (!ended) {
-      processes.end("diagnosis", kDiagnosisEnds_s);
-      return {.why_not = "its diagnosis was not ready"};
-    }
-    if (ended->exit_status != 0) return {.why_not = describe(*ended)};
-    return pause_verdict(recording::read_file((folder_of(options_) / "summary.json").string()));
-  } catch (const std::exception& error) {
-    return {.why_not = std::string("it was not diagnosed: ") + error.what()};
-  }
 }
 
 bool LiveClosing::takes(const PauseVerdict& verdict, std::int64_t number) {
@@ -124,10 +73,7 @@ bool LiveClosing::takes(const PauseVerdict& verdict, std::int64_t number) {
 bool LiveClosing::give_plus(std::int64_t number) {
   std::string refused;
   try {
-    cancellation::ControlModel plus =
-        control_model(folder_of(options_) / "control_model.json", options_.rig, options_.config);
-    plus.adapts.reset();  // neither what judged it nor C follows the hand
-    refused = trials_.use(plus);
+    refused = trials_.use(diagnosed_model(options_));
   } catch (const std::exception& error) {
     refused = error.what();
   }

@@ -28,7 +28,6 @@ class LiveClosing {
 
  private:
   bool close();
-  [[nodiscard]] PauseVerdict diagnose();
   [[nodiscard]] bool takes(const PauseVerdict& verdict, std::int64_t number);
   /// Gives the canceller C+.  @return false: it goes on with C's model
   [[nodiscard]] bool give_plus(std::int64_t number);

@@ -61,6 +61,10 @@ class SimulatedPerson {
                         "A, B, C, C' and C+: a mitigation runs over the bus, or in `stillhand "
                         "study --mitigations`");
     }
+    if (design_.control_model == experiment::kDiagnosed) {
+      throw ConfigError("--simulated", "an experiment whose C+ each session diagnosed",
+                        "C+ of a file, or no C+");
+    }
     chooses_models_ = std::ranges::any_of(design_.conditions,
                                           [](const std::string& each) { return each.size() > 1; });
   }
@@ -111,7 +115,7 @@ class SimulatedPerson {
   void choose_model(session::InProcessLoop& loop, Condition condition) const {
     if (!chooses_models_ || !cancels(condition)) return;
     if (condition == kCPlus) {
-      const std::string file = (registration_.folder / design_.control_model).string();
+      const std::string file = (registration_.folder / design_.model_file()).string();
       use(loop,
           cancellation::parse_control_model(recording::read_file(file), file, experiment::kRig));
       return;

@@ -7,12 +7,17 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <set>
+#include <thread>
+#include <utility>
 #include <vector>
 
+#include "services/files/cancellation/control_model_file.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/unit/lab/pause_summary.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -27,7 +32,9 @@ struct Killed {};
 class FakeTrials final : public lab::LiveTrials {
  public:
   /// @param kill_at  number of the call, from 1, in which the program is killed; 0: in none
-  explicit FakeTrials(int kill_at = 0) : kill_at_(kill_at) {}
+  explicit FakeTrials(int kill_at = 0) : kill_at_(kill_at) {
+    model_.control = {1000.0, {-2.0}, {1.0}};
+  }
 
   const session::TrialOutcome& run(const session::PlannedTrial& planned) override {
     return run_once(planned);
@@ -54,15 +61,17 @@ class FakeTrials final : public lab::LiveTrials {
     return run_once(planned);
   }
   void rest(const std::string& /*what*/, double /*seconds*/,
-            const std::function<bool()>& /*over*/) override {
+            const std::function<bool()>& over) override {
     count();
+    while (over && !over()) std::this_thread::yield();
   }
   void say(const std::string& /*line*/) override {}
   void note(const std::string& /*text*/) override {}
   lab::Asked asked() override { return {}; }
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
-  std::string use(const cancellation::ControlModel& /*model*/) override {
+  std::string use(const cancellation::ControlModel& model) override {
     ++models;
+    used.push_back(model);
     return "";
   }
   [[nodiscard]] bool interrupted() const override { return false; }
@@ -71,6 +80,7 @@ class FakeTrials final : public lab::LiveTrials {
   std::vector<session::PlannedTrial> ran;
   int asked_prompts = 0;
   int models = 0;
+  std::vector<cancellation::ControlModel> used;
   bool passes_over = false;
 
  private:
@@ -111,8 +121,7 @@ class SessionScriptTest : public testing::Test {
     for (const Entry& entry : journal.entries()) progress.take(entry);
     const std::int64_t session = progress.sessions() + 1;
     progress.take(journal.append({.kind = EntryKind::kSessionBegan, .session = session}));
-    const lab::LabOptions lab;
-    SessionScript script(*folder_, 0, journal, progress, lab);
+    SessionScript script(*folder_, 0, journal, progress, lab_);
     try {
       script.run(trials);
     } catch (const Killed&) {
@@ -135,9 +144,10 @@ class SessionScriptTest : public testing::Test {
 
   Design design_;
   std::unique_ptr<Folder> folder_;
+  lab::LabOptions lab_;
+  const support::Folder root_;
 
  private:
-  const support::Folder root_;
   int folders_ = 0;
 };
 
@@ -161,6 +171,72 @@ TEST_F(SessionScriptTest, TheParticipantSeesThePlaceInTheProtocol) {
   EXPECT_EQ(trials.shown[8].wait_s, 60.0);
   EXPECT_EQ(trials.shown[3].steps, 7);
   EXPECT_EQ(trials.shown[3].lowest, "not at all");
+}
+
+/// In place of `stillhand close-the-loop`, a program that copies a summary and a model.
+class DiagnosedTest : public SessionScriptTest {
+ protected:
+  DiagnosedTest() {
+    design_.conditions = {"B", "C", "C+"};
+    design_.comparisons = {};
+    design_.control_model = kDiagnosed;
+    design_.blocks = 1;
+    for (const char* each : {"logs", "bin", "config", "answer"}) {
+      std::filesystem::create_directory(root_ / each);
+    }
+    write("config/cancellation.yaml", "");
+    write("bin/stillhand", "#!/bin/sh\nfor out; do :; done\nmkdir -p \"$out\"\ncp " +
+                               (root_ / "answer").string() + "/* \"$out\"\n");
+    std::filesystem::permissions(root_ / "bin/stillhand", std::filesystem::perms::owner_all);
+    write("answer/control_model.json",
+          cancellation::control_model_json(cancellation::control_model({1000.0, {3.2}, {1.0}}), 1));
+    lab_.out = root_.path();
+    lab_.programs = root_ / "bin";
+    lab_.config = root_ / "config";
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(root_ / name) << text;
+  }
+  /// First gain of the models that the session's trials got, in order, and whether it has a map.
+  std::vector<std::pair<double, bool>> given() {
+    make(3);
+    FakeTrials trials;
+    EXPECT_TRUE(run(trials));
+    std::vector<std::pair<double, bool>> out;
+    for (const auto& model : trials.used) {
+      const cancellation::InputPath& input = model.inputs.at(0);
+      out.emplace_back(input.numerator.at(0), !input.map.values.empty());
+    }
+    return out;
+  }
+  std::string note() {
+    for (const Entry& entry : read_journal(folder_->journal(0))) {
+      if (entry.kind == EntryKind::kNote) return entry.text;
+    }
+    return "";
+  }
+};
+
+// B and C run the identified model of FakeTrials, of gain -2.
+TEST_F(DiagnosedTest, CPlusIsWhatTheSessionsIdentificationLacks) {
+  write("answer/summary.json", lab::pause_summary().dump());
+  EXPECT_THAT(given(), testing::UnorderedElementsAre(std::pair(-2.0, false), std::pair(-2.0, false),
+                                                     std::pair(3.2, false)));
+  EXPECT_THAT(note(), HasSubstr("diagnosis: "));
+  EXPECT_THAT(note(), testing::Not(HasSubstr("in its place")));
+}
+
+// The intention counts: its trials are C+, and a recording keeps them apart from C.
+TEST_F(DiagnosedTest, WithoutACertainGainCPlusIsTheIdentifiedModelBehindAStraightLine) {
+  nlohmann::json summary = lab::pause_summary();
+  summary["kept"] = false;
+  for (const bool ready : {true, false}) {
+    write("answer/summary.json", ready ? summary.dump() : "");
+    EXPECT_THAT(given(),
+                testing::UnorderedElementsAre(std::pair(-2.0, false), std::pair(-2.0, false),
+                                              std::pair(-2.0, true)));
+    EXPECT_THAT(note(), HasSubstr("the identified model runs in its place"));
+  }
 }
 
 TEST_F(SessionScriptTest, AMitigationRunsWithItsPartsBehindItsIdentification) {

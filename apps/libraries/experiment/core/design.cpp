@@ -52,7 +52,7 @@ void check_conditions(const Design& design) {
   if (has(design.conditions, "C+") == design.control_model.empty()) {
     throw ConfigError("control_model",
                       design.control_model.empty() ? "nothing" : design.control_model,
-                      "a file with condition C+, and none without it");
+                      "a file or diagnosed with condition C+, and none without it");
   }
 }
 

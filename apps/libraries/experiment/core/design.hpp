@@ -22,6 +22,9 @@ inline constexpr std::uint32_t kRig = 1;
 /// or another rest of the arm, which run in one process alone (`stillhand study`).
 std::string live_conditions();
 
+/// `control_model` of an experiment whose C+ is diagnosed in each session, from its identification.
+inline constexpr const char* kDiagnosed = "diagnosed";
+
 /// Trials before the measured ones, in a condition that the participant may know.
 struct Practice {
   double trial_s = 60.0;
@@ -108,6 +111,11 @@ struct Design {
   double alpha = 0.05;
   std::string assignment;  ///< SHA-256 of the sealed assignment of labels and orders
 
+  /// File of the model of condition C+, inside the folder; empty: there is none.
+  [[nodiscard]] std::string model_file() const {
+    return control_model == kDiagnosed ? std::string() : control_model;
+  }
+
   /// The plain fields; lists are read and written by experiment_file.
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
@@ -133,7 +141,8 @@ struct Design {
     visit("subject_seed", self.subject_seed, Range{0.0, 4294967295.0},
           "[-] of the simulated subjects: participant N is subject N of this seed");
     visit("control_model", self.control_model, Range{0.0, 1000.0},
-          "model of condition C+, a file inside this folder; empty: none");
+          "model of condition C+: a file inside this folder, or diagnosed: each session's own, in "
+          "the pause behind its identification; empty: none");
     visit.group("practice", self.practice);
     visit.group("exclusion", self.exclusion);
     visit("alpha", self.alpha, Range{1e-6, 0.5}, "[-] level of the planned comparisons");
