@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/close_the_loop/gain.hpp"
 #include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::close_the_loop {
@@ -18,6 +19,25 @@ Estimate each_repeat(const Conditions& conditions, Value value, const Labels&...
     values.push_back(value(conditions.at(labels)[r]...));
   }
   return estimate(values);
+}
+
+// Of a number of which less is better.
+bool falls(const Estimate& change) {
+  std::optional<std::pair<double, double>> saved95;
+  if (change.interval95) saved95 = {-change.interval95->second, -change.interval95->first};
+  return is_gain(-change.mean, saved95);
+}
+
+std::vector<Harm> harms_of(const Conditions& conditions) {
+  std::vector<Harm> harms;
+  for (const char* than : {"C", "C'"}) {
+    for (const Number& number : kNumbers) {
+      if (!number.lower_is_better || !has(than, number)) continue;
+      const Estimate rise = change(conditions, than, "C+", number);
+      if (rise.interval95 && rise.interval95->first > 0.0) harms.push_back({&number, than, rise});
+    }
+  }
+  return harms;
 }
 
 }  // namespace
@@ -72,12 +92,7 @@ Estimate restored(const Conditions& conditions, const std::string& label, const 
   return each_repeat(conditions, share, std::string("A"), std::string("B"), label);
 }
 
-bool LoopDecision::certain() const {
-  const auto excludes_0 = [](const Estimate& change) {
-    return change.interval95 && (change.interval95->second < 0.0 || change.interval95->first > 0.0);
-  };
-  return excludes_0(over_c) && excludes_0(over_c_prime);
-}
+bool LoopDecision::kept() const { return augmented && falls(over_c) && falls(over_c_prime); }
 
 LoopDecision decide(const Conditions& conditions, const LoopResult& result) {
   const Verdict& verdict = result.verdict();
@@ -92,9 +107,10 @@ LoopDecision decide(const Conditions& conditions, const LoopResult& result) {
   out.over_c = change(conditions, "C", "C+", measure);
   out.over_c_prime = change(conditions, "C'", "C+", measure);
   out.augmented = result.rounds[result.final_round].augmented;
+  if (out.augmented) out.harms = harms_of(conditions);
   if (out.kept()) {
     out.model_of = "C+";
-  } else if (change(conditions, "C", "C'", measure).mean < 0.0) {
+  } else if (falls(change(conditions, "C", "C'", measure))) {
     out.model_of = "C'";
   }
   return out;

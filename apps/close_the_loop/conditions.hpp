@@ -55,19 +55,23 @@ Estimate change(const Conditions& conditions, const std::string& from, const std
 /// (B - X)/(B - A) of a number, repeat by repeat.
 Estimate restored(const Conditions& conditions, const std::string& label, const Number& number);
 
+/// A number that is worse with C+ than with another condition, its interval above 0.
+struct Harm {
+  const Number* number;
+  const char* than;  ///< "C" or "C'"
+  Estimate rise;
+};
+
 /// Whether C+ is kept, METHOD Eq. CL-10: by what its motor leaves in trials that no fit has seen.
 struct LoopDecision {
   const Number* measure = &kNumbers[index_of("force_left_n")];
   Estimate over_c;             ///< change of the measure from C to C+, repeat by repeat
   Estimate over_c_prime;       ///< from C' to C+
   bool augmented = false;      ///< C+ ran with the augmented model; else it is C'
+  std::vector<Harm> harms;     ///< what C+ makes worse, whether it is kept or not
   const char* model_of = "C";  ///< condition whose model the loop writes
 
-  [[nodiscard]] bool kept() const {
-    return augmented && over_c.mean < 0.0 && over_c_prime.mean < 0.0;
-  }
-  /// Neither interval contains 0.
-  [[nodiscard]] bool certain() const;
+  [[nodiscard]] bool kept() const;
 };
 
 LoopDecision decide(const Conditions& conditions, const LoopResult& result);

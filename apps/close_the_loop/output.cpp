@@ -106,9 +106,17 @@ ordered_json findings_json(const Verdict& verdict) {
 
 // Eq. CL-10.
 ordered_json decision_json(const LoopDecision& decision) {
+  ordered_json worse = ordered_json::array();
+  for (const Harm& harm : decision.harms) {
+    worse.push_back({{"measure", harm.number->key},
+                     {"than", harm.than},
+                     {"mean_difference", harm.rise.mean},
+                     {"interval95", or_null(harm.rise.interval95)}});
+  }
   return {{"measure", decision.measure->key},
           {"C-C+", change_json(decision.over_c)},
           {"C'-C+", change_json(decision.over_c_prime)},
+          {"worse", worse},
           {"model_of", decision.model_of}};
 }
 
@@ -134,17 +142,21 @@ ordered_json round_json(const Round& round, bool kept) {
   return json;
 }
 
-// What is worse with C+ than with C', with an interval above 0.
-std::string harm_text(const Conditions& conditions) {
+std::string harm_text(const LoopDecision& decision) {
   std::string text;
-  for (const Number& number : kNumbers) {
-    if (!number.lower_is_better || !has("C'", number)) continue;
-    const Estimate rise = change(conditions, "C'", "C+", number);
-    if (!rise.interval95 || rise.interval95->first <= 0.0) continue;
-    text += fmt::format("{}{} by {}", text.empty() ? " C+ is worse than C' in " : ", ",
-                        number.title, with_interval(rise, number.decimals + 1));
+  for (const Harm& harm : decision.harms) {
+    text += fmt::format("{}{} by {} than with {}", text.empty() ? " C+ makes worse: " : ", ",
+                        harm.number->title, with_interval(harm.rise, harm.number->decimals + 1),
+                        harm.than);
   }
   return text.empty() ? text : text + ".";
+}
+
+// Eq. CL-10, for what was decided.
+const char* reason_text(const LoopDecision& decision) {
+  if (!decision.over_c.interval95) return "; one trial has no interval, and the mean decides";
+  return decision.kept() ? ", and both intervals are below 0"
+                         : ", and not both intervals are below 0";
 }
 
 }  // namespace
@@ -316,9 +328,7 @@ std::string kept_text(const LoopRecord& record) {
       "The canceller gets the model of {}.{}",
       decision.kept() ? "kept" : "not kept", repeats, repeats == 1 ? "" : "s",
       with_interval(decision.over_c, decimals), with_interval(decision.over_c_prime, decimals),
-      decision.measure->title,
-      decision.certain() ? ", and both intervals exclude 0" : ", as far as these repeats show",
-      decision.model_of, harm_text(record.conditions));
+      decision.measure->title, reason_text(decision), decision.model_of, harm_text(decision));
 }
 
 std::string with_interval(const Estimate& estimate, int decimals, double factor) {

@@ -20,11 +20,6 @@ double unseen_s(const json& summary) {
   return seconds;
 }
 
-// The interval of what C+ leaves less, of what C leaves; none: there are too few blocks.
-bool excludes_no_gain(const json& interval) {
-  return interval.is_null() || interval.at(0).get<double>() > 0.0;
-}
-
 std::string why_not(const json& summary) {
   const std::string kind = summary.at("verdict").at("kind");
   if (kind == "none") return "nothing that counts is missing in it";
@@ -34,8 +29,9 @@ std::string why_not(const json& summary) {
   if (summary.at("decided_on") != "motor") return kind + " was not judged by the motor";
   if (summary.at("kept").get<bool>()) return {};
   const json& decision = summary.at("decision");
-  return fmt::format("C+ ({}) would leave {} where it leaves {}", kind,
-                     newton(decision.at("augmented")), newton(decision.at("linear")));
+  return fmt::format("C+ ({}) would leave {} where it leaves {}{}", kind,
+                     newton(decision.at("augmented")), newton(decision.at("linear")),
+                     decision.at("less").get<double>() > 0.0 ? ", which may be chance" : "");
 }
 
 }  // namespace
@@ -46,7 +42,6 @@ PauseVerdict pause_verdict(const std::string& text) {
   out.why_not = why_not(summary);
   if (!out.why_not.empty()) return out;
   const json& decision = summary.at("decision");
-  out.certain = excludes_no_gain(decision.at("less_interval95"));
   out.found = fmt::format("{}: leaves {} in place of {}, in {:.0f} s that no fit has seen",
                           summary.at("verdict").at("kind").get<std::string>(),
                           newton(decision.at("augmented")), newton(decision.at("linear")),

@@ -9,12 +9,11 @@ namespace stillhand::lab {
 struct PauseVerdict {
   std::string why_not = {};  ///< why there is no C+ to offer, as a clause; empty: there is one
   std::string found = {};    ///< what C+ leaves, and C, where no fit has seen the force
-  bool certain = false;      ///< no interval of the difference holds 0
 };
 
 /// Reads `summary.json` of `stillhand close-the-loop --pegged`.  C+ is on offer where something
-/// that counts is missing, and the motor leaves less with C+ than with the linear model on the part
-/// that no fit has seen (close_the_loop, CL-9).
+/// that counts is missing and the loop keeps C+, judged on the part that no fit has seen
+/// (close_the_loop, CL-9 and CL-10).
 /// @throws nlohmann::json::exception for another text
 PauseVerdict pause_verdict(const std::string& summary);
 

@@ -25,12 +25,16 @@ class Pairs {
   std::vector<double> seconds_;
 };
 
-}  // namespace
-
-bool Decision::certain() const {
-  const auto interval = step ? step->cut_interval95() : std::nullopt;
-  return interval && (interval->first > 0.0 || interval->second < 0.0);
+bool leaves_more(const Judged& judged, bool by_motor) {
+  if (by_motor && !(judged.motor_linear && judged.motor_augmented)) return false;
+  const Remaining step{by_motor ? judged.motor_linear->left : judged.linear.left,
+                       by_motor ? judged.motor_augmented->left : judged.augmented.left,
+                       {}};
+  const auto saved95 = step.cut_interval95();
+  return saved95 && saved95->second < 0.0;
 }
+
+}  // namespace
 
 Decision decide(const std::vector<Judged>& judged, bool same, bool motor_may, bool plus_runs) {
   Decision out;
@@ -47,6 +51,9 @@ Decision decide(const std::vector<Judged>& judged, bool same, bool motor_may, bo
   out.step = by_motor.pooled_step();
   out.by_motor = motor_may && (out.step || !plus_runs);
   if (!out.by_motor) out.step = by_prediction.pooled_step();
+  for (const Judged& each : judged) {
+    if (leaves_more(each, out.by_motor)) out.worse.push_back(each.source);
+  }
   Pairs kept;
   for (const Judged& each : judged) {
     const auto& motor =

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/close_the_loop/gain.hpp"
 #include "apps/close_the_loop/recorded/replay.hpp"
 
 namespace stillhand::close_the_loop {
@@ -27,11 +28,12 @@ struct Decision {
   /// Over all unseen records: `without` is what C leaves, `left` what C+ leaves.  None where C+ did
   /// not run.
   std::optional<Remaining> step;
+  std::vector<std::string> worse;  ///< records on which C+ leaves more for certain
   bool helps = true;  ///< what is kept leaves less than no motor, or no prediction, does
 
-  [[nodiscard]] bool kept() const { return same || (step && step->left.rms < step->without.rms); }
-  /// The 95 % interval of the difference does not contain 0.
-  [[nodiscard]] bool certain() const;
+  [[nodiscard]] bool kept() const {
+    return same || (step && is_gain(step->cut(), step->cut_interval95()));
+  }
 };
 
 /// @param judged     at least one record

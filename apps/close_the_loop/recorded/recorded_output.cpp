@@ -53,7 +53,8 @@ ordered_json decision_json(const Decision& decision) {
   return {{"linear", level_json(decision.step->without)},
           {"augmented", level_json(decision.step->left)},
           {"less", decision.step->cut()},
-          {"less_interval95", report::or_null(decision.step->cut_interval95())}};
+          {"less_interval95", report::or_null(decision.step->cut_interval95())},
+          {"worse", decision.worse}};
 }
 
 // The rows of both tables: what acted, what is left, what share it took away.

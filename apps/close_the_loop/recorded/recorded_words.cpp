@@ -35,13 +35,13 @@ std::string step_text(const RecordedLoop& loop) {
       report::short_number(step.without.rms), unit,
       decision.by_motor && !loop.linear_control ? "the motor off" : "the linear one (C)",
       number(100.0 * sign * step.cut(), 1), sign > 0.0 ? "less" : "more");
-  if (const Interval interval = step.cut_interval95()) {
-    const auto [low, high] =
-        std::minmax({100.0 * sign * interval->first, 100.0 * sign * interval->second});
-    text += fmt::format(" [{}, {}]", number(low, 1), number(high, 1));
-  }
-  return text +
-         (decision.certain() ? ", and the interval excludes 0" : ", as far as these records show");
+  const Interval interval = step.cut_interval95();
+  if (!interval)
+    return text + "; less than three blocks of 10 s have no interval, and this decides";
+  const auto [low, high] =
+      std::minmax({100.0 * sign * interval->first, 100.0 * sign * interval->second});
+  text += fmt::format(" [{}, {}]", number(low, 1), number(high, 1));
+  return low <= 0.0 ? text + ", and the interval holds 0" : text;
 }
 
 // [unit of the output] over all unseen records.
@@ -122,8 +122,12 @@ std::string kept_text(const RecordedLoop& loop) {
   if (!decision.step) {
     return "C+ is not kept, because it did not run: the linear model (C) stays." + warning;
   }
-  return fmt::format("C+ is {}: on the unseen records {}.{}{}",
-                     decision.kept() ? "kept" : "not kept", step_text(loop),
+  const std::string worse =
+      decision.worse.empty()
+          ? ""
+          : fmt::format(" C+ leaves more of {}.", fmt::join(decision.worse, " and of "));
+  return fmt::format("C+ is {}: on the unseen records {}.{}{}{}",
+                     decision.kept() ? "kept" : "not kept", step_text(loop), worse,
                      decision.kept() ? "" : " The linear model (C) stays, also for the canceller.",
                      warning);
 }

@@ -106,7 +106,6 @@ TEST(LoopDecisionTest, AModelThatLeavesMoreThanEitherYardstickIsNotKept) {
   const LoopResult result = with_finding(kBody);
   const LoopDecision kept = decide(left(high, middle, low), result);
   EXPECT_TRUE(kept.kept());
-  EXPECT_TRUE(kept.certain());
   EXPECT_EQ(chosen_model(result, kept).rate_hz, 3.0);
   // The tracking error of `made` is smallest with C+ in each of these.
   const LoopDecision worse_than_followed = decide(left(high, low, middle), result);
@@ -117,15 +116,34 @@ TEST(LoopDecisionTest, AModelThatLeavesMoreThanEitherYardstickIsNotKept) {
   EXPECT_STREQ(worse_than_both.model_of, "C");
 }
 
-TEST(LoopDecisionTest, AnIntervalWithNoneInItIsSaid) {
-  const LoopDecision sut =
-      decide(left({3.0, 3.0, 3.0}, {2.0, 2.0, 2.0}, {1.0, 2.9, 1.0}), with_finding(kBody));
+TEST(LoopDecisionTest, AMeanGainWhoseIntervalHoldsNoneIsNotKept) {
+  const LoopResult result = with_finding(kBody);
+  const LoopDecision sut = decide(left({3.0, 3.0, 3.0}, {2.0, 2.0, 2.0}, {1.0, 2.9, 1.0}), result);
+  EXPECT_LT(sut.over_c_prime.mean, 0.0);
+  EXPECT_FALSE(sut.kept());
+  EXPECT_STREQ(sut.model_of, "C'");
+  // C' has to be worth its work, too.
+  const LoopDecision neither =
+      decide(left({3.0, 3.0, 3.0}, {2.0, 3.9, 2.0}, {1.0, 3.9, 1.0}), result);
+  EXPECT_STREQ(neither.model_of, "C");
+}
+
+TEST(LoopDecisionTest, WhatCPlusMakesWorseIsGivenNextToItsGain) {
+  Conditions conditions = left({3.0, 3.1, 2.9}, {2.0, 2.1, 1.9}, {1.0, 1.1, 0.9});
+  for (TrialRun& run : conditions.at("C+")) run.metrics.rms_error_mm += 20.0;
+  const LoopDecision sut = decide(conditions, with_finding(kBody));
   EXPECT_TRUE(sut.kept());
-  EXPECT_FALSE(sut.certain());
+  ASSERT_EQ(sut.harms.size(), 2u);
+  EXPECT_STREQ(sut.harms[0].number->key, "rms_error_mm");
+  EXPECT_STREQ(sut.harms[0].than, "C");
+  EXPECT_STREQ(sut.harms[1].than, "C'");
+  EXPECT_GT(sut.harms[1].rise.interval95->first, 0.0);
 }
 
 TEST(LoopDecisionTest, WhatTheMotorDoesAboutTheDriveIsJudgedByTheTracking) {
-  const Conditions more_force = left({1.0, 1.1, 0.9}, {1.0, 1.1, 0.9}, {2.0, 2.1, 1.9});
+  Conditions more_force = left({1.0, 1.1, 0.9}, {1.0, 1.1, 0.9}, {2.0, 2.1, 1.9});
+  more_force.at("C+") = runs("C+", {5.0, 7.0, 9.0});
+  for (TrialRun& run : more_force.at("C+")) run.forces.left_n = 2.0;
   EXPECT_FALSE(decide(more_force, with_finding(kBody)).kept());
   const LoopDecision sut = decide(more_force, with_finding(kDrive));
   EXPECT_STREQ(sut.measure->key, "rms_error_mm");

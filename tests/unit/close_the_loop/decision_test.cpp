@@ -37,10 +37,10 @@ TEST(DecisionTest, AModelWithWhichTheMotorLeavesMoreIsNotKeptWhateverThePredicti
   const Decision sut = decide({judged(kFour, level({6.0, 6.2, 5.8, 6.1}))}, false, true, true);
   EXPECT_TRUE(sut.by_motor);
   EXPECT_FALSE(sut.kept());
-  EXPECT_TRUE(sut.certain());
+  EXPECT_EQ(sut.worse.size(), 1u);
   const Decision better = decide({judged(kFour, level({2.0, 2.1, 1.9, 2.0}))}, false, true, true);
   EXPECT_TRUE(better.kept());
-  EXPECT_TRUE(better.certain());
+  EXPECT_TRUE(better.worse.empty());
 }
 
 // By construction: whatever the rows are, "kept" never stands next to a row that is worse.
@@ -58,10 +58,10 @@ TEST(DecisionTest, KeptIsNeverNextToAWorseRow) {
     const Decision sut = decide({one}, false, true, true);
     const double c = one.motor_linear->left.rms;
     const double c_plus = one.motor_augmented->left.rms;
-    ASSERT_EQ(sut.kept(), c_plus < c);
+    ASSERT_TRUE(!sut.kept() || c_plus < c);
     kept += sut.kept() ? 1 : 0;
   }
-  EXPECT_GT(kept, 300);
+  EXPECT_GT(kept, 100);  // half of those that have no interval, and more
   EXPECT_LT(kept, 700);
 }
 
@@ -73,9 +73,9 @@ TEST(DecisionTest, SeveralRecordsAreJudgedAsOne) {
   ASSERT_TRUE(sut.step);
   EXPECT_DOUBLE_EQ(sut.step->without.rms, 2.0);
   EXPECT_DOUBLE_EQ(sut.step->left.rms, std::sqrt(3.0));
-  EXPECT_TRUE(sut.kept());
   // Differences of +3 and -1: mean 1, standard deviation 2.14, t = 1.3 of 8.
-  EXPECT_FALSE(sut.certain());
+  EXPECT_FALSE(sut.kept()) << "a mean that may be chance";
+  EXPECT_EQ(sut.worse.size(), 1u) << "the harm is stated";
 }
 
 TEST(DecisionTest, WhereNoMotorCanRunThePredictionDecides) {

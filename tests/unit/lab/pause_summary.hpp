@@ -13,9 +13,7 @@ inline nlohmann::ordered_json pause_summary() {
           {"kept", true},
           {"unseen", {{{"seconds", 36.0}}}},
           {"decision",
-           {{"linear", {{"rms", 1.462}}},
-            {"augmented", {{"rms", 0.809}}},
-            {"less_interval95", {0.31, 0.52}}}}};
+           {{"linear", {{"rms", 1.462}}}, {"augmented", {{"rms", 0.809}}}, {"less", 0.447}}}};
 }
 
 }  // namespace stillhand::lab
