@@ -24,6 +24,7 @@
 #include "services/core/diagnosis/working_set.hpp"
 #include "services/files/cancellation/control_model_file.hpp"
 #include "services/files/diagnosis/model_file.hpp"
+#include "services/files/digest/content_digest.hpp"
 #include "services/files/digest/digest.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
@@ -80,9 +81,12 @@ void require_diagnosed(const ControlModelArguments& arguments, const std::string
 int run(const ControlModelArguments& arguments) {
   report::ResultFiles files({{"--save", arguments.save}, {"--json", arguments.json}},
                             {arguments.model, arguments.recording});
+  const auto canceller =
+      settings::load<cancellation::Config>(arguments.config / "cancellation.yaml", "cancellation");
   const std::string text = recording::read_file(arguments.model.string());
   const diagnosis::CarriedModel carried =
       diagnosis::parse_carried_model(text, arguments.model.string());
+  rig::require_as_written(text, arguments.model.string());
   require_diagnosed(arguments, text);
   const diagnosis::Model& model = carried.in_session;
   const diagnosis::Measurement whole =
@@ -99,10 +103,7 @@ int run(const ControlModelArguments& arguments) {
   options.lead_s = 1e-3 * arguments.lead_ms;
   ConvertedModel control = to_control_model(carried, signals, options);
   if (!arguments.as_it_is) control.model.adapts = average_hand();
-  cancellation::require_sound(
-      control.model,
-      settings::load<cancellation::Config>(arguments.config / "cancellation.yaml", "cancellation"),
-      arguments.model.string());
+  cancellation::require_sound(control.model, canceller, arguments.model.string());
   files.set("--save", cancellation::control_model_json(control.model, arguments.rig));
   if (!arguments.json.empty()) files.set_json("--json", summary_of(control));
   files.publish();

@@ -17,6 +17,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/recording/csv.hpp"
 #include "services/files/diagnosis/model_file.hpp"
+#include "services/files/digest/content_digest.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
 
@@ -42,8 +43,10 @@ struct Models {
 
 Models read_models(const std::filesystem::path& path) {
   const std::string text = recording::read_file(path.string());
-  return {diagnosis::parse_carried_model(text, path.string()),
-          diagnosis::parse_linear_model(text, path.string()), report::provenance_in(text)};
+  Models models{diagnosis::parse_carried_model(text, path.string()),
+                diagnosis::parse_linear_model(text, path.string()), report::provenance_in(text)};
+  rig::require_as_written(text, path.string());
+  return models;
 }
 
 // --picture: the format by the name's ending.

@@ -12,6 +12,7 @@
 
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/or_null.hpp"
+#include "services/files/digest/content_digest.hpp"
 #include "services/files/digest/digest.hpp"
 #include "version.hpp"
 
@@ -66,7 +67,10 @@ Provenance provenance_of_this_call(const std::vector<std::filesystem::path>& sou
 
 std::string with_provenance(std::string_view json, const Provenance& provenance) {
   ordered_json whole = ordered_json::parse(json);
-  whole["provenance"] = json_of(provenance);
+  whole.erase(rig::kProvenance);
+  ordered_json entry = json_of(provenance);
+  entry[rig::kContentDigest] = rig::content_digest(whole);
+  whole[rig::kProvenance] = std::move(entry);
   return whole.dump(2) + "\n";
 }
 
