@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -33,19 +32,38 @@ double square_about(const std::vector<double>& x, double level) {
   return sum;
 }
 
+// The first tenth of each stretch of rows.
+std::vector<bool> starts_of(const std::vector<double>& time_s, double rate_hz) {
+  std::vector<bool> at_start(time_s.size(), false);
+  for (std::size_t first = 0, end = 0; first < time_s.size(); first = end) {
+    for (end = first + 1; end < time_s.size(); ++end) {
+      if ((time_s[end] - time_s[end - 1]) * rate_hz > 1.5) break;
+    }
+    for (std::size_t n = first; n < first + (end - first) / 10; ++n) at_start[n] = true;
+  }
+  return at_start;
+}
+
+double rms_of(const std::vector<double>& x) {
+  return std::sqrt(square_about(x, 0.0) / static_cast<double>(x.size()));
+}
+
 Judged judged_against(const std::vector<double>& all, const std::vector<bool>& given,
-                      std::vector<double> predicted) {
+                      const std::vector<bool>& at_start, std::vector<double> predicted) {
+  std::vector<double> start;
+  std::vector<double> rest;
   std::vector<double> measured;
   std::vector<double> residual;
   for (std::size_t n = 0; n < all.size(); ++n) {
     if (given[n]) continue;
     measured.push_back(all[n]);
     residual.push_back(all[n] - predicted[n]);
+    (at_start[n] ? start : rest).push_back(residual.back());
   }
   const double square = square_about(residual, 0.0);
   const double whole = square_about(measured, mean_of(measured));
   const double not_known = std::numeric_limits<double>::quiet_NaN();
-  Score score{std::sqrt(square / static_cast<double>(residual.size())), not_known, not_known};
+  Score score{rms_of(residual), not_known, not_known, residual.size(), rms_of(start), rms_of(rest)};
   // A constant output leaves rounding about its mean.
   if (whole > 1e-18 * square_about(measured, 0.0)) {
     score.vaf_percent = 100.0 * (1.0 - square_about(residual, mean_of(residual)) / whole);
@@ -70,7 +88,10 @@ std::vector<double> at_rows(const std::vector<double>& time_s, const diagnosis::
 ordered_json json_of(const Score& score) {
   return {{"rmse", or_null(score.rmse)},
           {"vaf_percent", or_null(score.vaf_percent)},
-          {"fit_percent", or_null(score.fit_percent)}};
+          {"fit_percent", or_null(score.fit_percent)},
+          {"rows", score.rows},
+          {"start_rmse", or_null(score.start_rmse)},
+          {"rest_rmse", or_null(score.rest_rmse)}};
 }
 
 std::string line_of(const char* name, const Score& score, const std::string& unit) {
@@ -78,6 +99,17 @@ std::string line_of(const char* name, const Score& score, const std::string& uni
       "{:<9}RMSE {:.4g} {}, {}, fit {}\n", name, score.rmse, unit,
       diagnosis::vaf_in_words(score.vaf_percent),
       score.fit_percent < -100.0 ? "below -100 %" : fmt::format("{:.2f} %", score.fit_percent));
+}
+
+std::string scored_line(const Score& score, const std::string& unit) {
+  std::string line = fmt::format("scored   {} rows", score.rows);
+  if (std::isfinite(score.start_rmse)) {
+    line += fmt::format(
+        "; RMSE {:.4g} {} in the first tenth of each stretch, where a guessed start still shows, "
+        "and {:.4g} {} in the rest",
+        score.start_rmse, unit, score.rest_rmse, unit);
+  }
+  return line + "\n";
 }
 
 // Eq. DG-79, the gain of one of several recordings: a unit or a sign that is not that of
@@ -115,10 +147,16 @@ std::optional<Judgement> judged(Prediction& prediction,
                                 std::size_t start_samples) {
   const recording::Column& model = prediction.table.columns.front();
   const diagnosis::Channel* output = measurement.find(prediction.output);
-  if (output == nullptr || std::ranges::all_of(prediction.given, std::identity())) return {};
+  if (output == nullptr) return {};
   if (output->unit != model.unit) {
     prediction.notes.push_back("not judged: the model predicts " + output->name + " in " +
                                model.unit + ", and the recording holds it in " + output->unit);
+    return {};
+  }
+  const auto rows = std::ranges::count(prediction.given, false);
+  if (static_cast<std::size_t>(rows) < kLeastScored) {
+    prediction.notes.push_back(
+        fmt::format("not judged: {} rows, and a score takes {}", rows, kLeastScored));
     return {};
   }
   Judgement judgement;
@@ -126,11 +164,13 @@ std::optional<Judgement> judged(Prediction& prediction,
   judgement.rate_hz = measurement.rate_hz;
   judgement.measured = {output->name, output->unit,
                         at_rows(judgement.time_s, *output, measurement)};
-  judgement.carried = judged_against(judgement.measured.values, prediction.given, model.values);
+  const std::vector<bool> at_start = starts_of(judgement.time_s, judgement.rate_hz);
+  judgement.carried =
+      judged_against(judgement.measured.values, prediction.given, at_start, model.values);
   judgement.unusable = why_unusable(judgement.measured, prediction.given, judgement.carried.values);
   if (linear) {
     Prediction without = predict(diagnosis::carried_as_it_is(*linear), measurement, start_samples);
-    judgement.linear = judged_against(judgement.measured.values, prediction.given,
+    judgement.linear = judged_against(judgement.measured.values, prediction.given, at_start,
                                       std::move(without.table.columns.front().values));
   }
   return judgement;
@@ -140,7 +180,8 @@ std::string judgement_table(const Judgement& judgement) {
   const std::string& unit = judgement.measured.unit;
   return (judgement.unusable.empty() ? "" : "usable   no: " + judgement.unusable + "\n") +
          (judgement.linear ? line_of("linear", judgement.linear->score, unit) : std::string()) +
-         line_of(judgement.linear ? "effects" : "model", judgement.carried.score, unit);
+         line_of(judgement.linear ? "effects" : "model", judgement.carried.score, unit) +
+         scored_line(judgement.carried.score, unit);
 }
 
 std::string judgement_json(const Prediction& prediction, const std::optional<Judgement>& judgement,

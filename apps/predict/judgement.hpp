@@ -24,6 +24,11 @@ struct Score {
   double rmse = 0.0;         ///< [unit of the output]
   double vaf_percent = 0.0;  ///< [%]
   double fit_percent = 0.0;  ///< [%]
+  std::size_t rows = 0;      ///< that were scored
+  /// [unit of the output] RMSE of the first tenth of each stretch, in which a guessed state of the
+  /// start still shows, and of the rest.
+  double start_rmse = 0.0;
+  double rest_rmse = 0.0;
 };
 
 /// One model's prediction at the rows, and its score.
@@ -44,8 +49,8 @@ struct Judgement {
 /// @param prediction  of the carried model over the measurement; its notes may grow
 /// @param linear      the model without any effect, if there is one
 /// @param start_samples  as in predict()
-/// @return none where the measurement does not hold the output, or in another unit, which a note
-/// of the prediction says
+/// @return none where the measurement does not hold the output, or in another unit, or in fewer
+/// than kLeastScored rows, which a note of the prediction says
 std::optional<Judgement> judged(Prediction& prediction,
                                 const std::optional<diagnosis::Model>& linear,
                                 const diagnosis::Measurement& measurement,

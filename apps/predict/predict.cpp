@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <functional>
 #include <limits>
 #include <stdexcept>
 
@@ -249,10 +248,12 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
     prediction.given.push_back(given[n]);
     column.values.push_back(values[n]);
   }
-  if (std::ranges::all_of(prediction.given, std::identity()) && start_samples > 0) {
+  const auto scored = static_cast<std::size_t>(std::ranges::count(prediction.given, false));
+  if (start_samples > 0 && scored < kLeastScored) {
     throw ConfigError("--start-from-output",
-                      std::to_string(start_samples) + ", and no stretch has more rows",
-                      "fewer than the recording's rows, so that some are left to predict");
+                      std::to_string(start_samples) + ", which leaves " + std::to_string(scored) +
+                          " rows to predict",
+                      "so few that " + std::to_string(kLeastScored) + " or more are left");
   }
   if (left_out > 0) {
     prediction.notes.push_back(std::to_string(left_out) +

@@ -10,6 +10,10 @@
 
 namespace stillhand::predict {
 
+/// Fewer rows are not scored: of so many independent errors an RMSE is known to 1/sqrt(2 * 20),
+/// 16 %, and those of a free run are not independent.
+inline constexpr std::size_t kLeastScored = 20;
+
 /// A free run over a recording that need not hold the output.
 struct Prediction {
   recording::Recording table;      ///< `t [s]`, `<output>_model [unit]`, a row a measured sample
@@ -26,7 +30,8 @@ struct Prediction {
 /// @param start_samples  rows at the start of each stretch whose measured output gives the body's
 ///                       state there, Eq. DG-82; 0: from the inputs alone
 /// @throws stillhand::ConfigError when a channel is missing, the rate is neither the model's nor a
-///         whole multiple of it, or the start needs an output that is not there.
+///         whole multiple of it, or the start needs an output that is not there, or leaves fewer
+///         than kLeastScored rows to predict.
 Prediction predict(const diagnosis::CarriedModel& carried,
                    const diagnosis::Measurement& measurement, std::size_t start_samples = 0);
 

@@ -79,6 +79,27 @@ TEST(JudgementTest, AnotherUnitOrSignOfTheOutputIsNotUsable) {
   EXPECT_EQ(judgement_of(kHalf, {}).unusable, "");
 }
 
+// What the start leaves is off by 3 N.
+TEST(JudgementTest, AScoreSaysOverHowManyRowsAndWhatTheStartShares) {
+  diagnosis::Measurement other = measured();
+  for (std::size_t n = 0; n < kSamples / 10; ++n) other.channels[1].values[n] += 3.0;
+  Prediction prediction = predict(diagnosis::carried_as_it_is(kExact), other);
+  const Judgement sut = judged(prediction, {}, other).value();
+  EXPECT_EQ(sut.carried.score.rows, kSamples);
+  EXPECT_NEAR(sut.carried.score.start_rmse, 3.0, 1e-9);
+  EXPECT_NEAR(sut.carried.score.rest_rmse, 0.0, 1e-9);
+  EXPECT_THAT(judgement_table(sut), HasSubstr("scored   3000 rows; RMSE 3 N in the first tenth"));
+  EXPECT_EQ(json::parse(judgement_json(prediction, sut, {}))["carried"]["rows"], kSamples);
+}
+
+TEST(JudgementTest, TooFewRowsAreNotScored) {
+  diagnosis::Measurement few = measured();
+  for (std::size_t n = kLeastScored - 1; n < kSamples; ++n) few.weight[n] = 0.0;
+  Prediction prediction = predict(diagnosis::carried_as_it_is(kExact), few);
+  EXPECT_FALSE(judged(prediction, {}, few).has_value());
+  EXPECT_THAT(prediction.notes.back(), HasSubstr("19 rows, and a score takes 20"));
+}
+
 TEST(JudgementTest, WithoutTheOutputThereIsNone) {
   diagnosis::Measurement inputs = measured();
   inputs.channels.pop_back();

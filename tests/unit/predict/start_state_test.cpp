@@ -184,7 +184,11 @@ TEST(StartStateTest, SomeRowsMustBeLeftToPredict) {
   const auto model = diagnosis::carried_as_it_is(model_with_error(slow_body()));
   EXPECT_THAT(support::refusal<ConfigError>(
                   [&] { stillhand::predict::predict(model, measurement, measurement.size()); }),
-              HasSubstr("no stretch has more rows"));
+              HasSubstr("which leaves 0 rows to predict"));
+  EXPECT_THAT(support::refusal<ConfigError>(
+                  [&] { stillhand::predict::predict(model, measurement, measurement.size() - 1); }),
+              HasSubstr("which leaves 1 rows to predict"))
+      << "one row is no score";
 }
 
 // s_1 = b_1 u - a_1 y of the sample before: the state of one pole, about its first value.
