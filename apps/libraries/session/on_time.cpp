@@ -220,10 +220,28 @@ std::optional<std::int32_t> model_in_use(const SessionRecording& session, const 
   return first->model();
 }
 
+namespace {
+
+// Ticks without a sample, where the file itself has lost some: nobody knows which of them the rig
+// had sent.
+std::int64_t not_recorded(const SessionRecording& session, const Trial& trial) {
+  if (session.damage.empty()) return 0;
+  const auto in_trial = [&](const auto& sample) { return trial.measures(sample.tick()); };
+  return trial.duration_ticks - std::ranges::count_if(session.raw_samples, in_trial);
+}
+
+}  // namespace
+
 SplitTrial split_trial(const SessionRecording& session, const Trial& trial,
                        const AnswerConfigs& configs) {
   if (!knows_the_feedthrough(session, trial)) {
     return {.why = "nobody knows the feedthrough force of a rig of devices"};
+  }
+  if (const std::int64_t ticks = not_recorded(session, trial); ticks > 0) {
+    return {.why =
+                fmt::format("{:.3g} s of it are lost with damaged parts of the file, and whether "
+                            "they came late is not known",
+                            static_cast<double>(ticks) / kControlRateHz)};
   }
   const auto number = model_in_use(session, trial);
   const auto model =

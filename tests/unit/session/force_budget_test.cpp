@@ -127,5 +127,19 @@ TEST(ForceBudgetTest, AnUnknownFeedthroughOrModelHasNoneAndWrongSettingsAreFound
             std::string::npos);
 }
 
+TEST(ForceBudgetTest, WhatTheFileLostIsUnknownAndNotLate) {
+  StalledSession session = made({});
+  auto& samples = session.recording.raw_samples;
+  samples.erase(samples.begin() + kStalledStart + 2000, samples.begin() + kStalledStart + 2500);
+  session.recording.damage = {"a chunk that cannot be read"};
+  const SplitTrial sut = split_trial(session.recording, session.trial, {});
+  EXPECT_FALSE(sut.budget);
+  EXPECT_NE(sut.why.find("0.5 s of it are lost with damaged parts"), std::string::npos) << sut.why;
+  session.recording.damage.clear();
+  EXPECT_EQ(split_trial(session.recording, session.trial, {}).why.find("damaged"),
+            std::string::npos)
+      << "of a whole file they were lost on the bus";
+}
+
 }  // namespace
 }  // namespace stillhand::session
