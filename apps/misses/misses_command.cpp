@@ -115,8 +115,10 @@ int run(const Arguments& arguments) {
     report::say_next("stillhand dashboard --recording " + arguments.recording +
                      ", where N jumps to the next one");
   }
-  for (const std::string& damage : session.damage) {
-    runtime::remark(arguments.recording + ": " + damage);
+  if (!session.damage.empty()) {
+    runtime::remark(fmt::format("{}: damaged in {} place{}, first: {}; `stillhand info` lists them",
+                                arguments.recording, session.damage.size(),
+                                session.damage.size() == 1 ? "" : "s", session.damage.front()));
   }
   return 0;
 }
