@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
 
 #include "apps/dashboard/view/words.hpp"
 #include "services/bus/trial_codec.hpp"
@@ -25,6 +28,23 @@ Source source_of(const recording::MessageView& message) {
   };
   return {message.channel.topic, message.schema == nullptr ? "" : message.schema->name,
           text("participant"), text("replayed") == "true"};
+}
+
+// A page of a rig that is not there would be a healthy one: nothing is late on it.
+[[noreturn]] void refuse_rig(const std::string& file, std::uint32_t rig,
+                             const std::map<recording::ChannelId, recording::Channel>& channels) {
+  std::set<std::string> rigs;
+  for (const auto& [id, channel] : channels) {
+    const auto writer = channel.metadata.find("participant");
+    if (writer == channel.metadata.end() || !writer->second.starts_with("stillhand/")) continue;
+    const std::string behind = writer->second.substr(std::string_view("stillhand/").size());
+    const std::string number = behind.substr(0, behind.find('/'));
+    if (number.find_first_not_of("0123456789") == std::string::npos) rigs.insert(number);
+  }
+  std::string known;
+  for (const std::string& each : rigs) known += (known.empty() ? "" : ", ") + each;
+  throw ConfigError("--rig", std::to_string(rig) + ", of which " + file + " has no message",
+                    known.empty() ? "a recording of a session" : "one of " + known);
 }
 
 std::int64_t ns(std::uint64_t time_ns) { return static_cast<std::int64_t>(time_ns); }
@@ -59,11 +79,13 @@ RecordedRun::RecordedRun(const std::string& file, const FeedOptions& options,
   alarm_levels_.resize(playing.feed.health().alarms().size(), Level::kHealthy);
   kept_.reserve(kMostKept + 1);
   kept_.push_back(playing);
+  bool of_this_rig = false;
   recordings::check(opened_.reader.for_each_message({}, [&](const recording::MessageView& message) {
     const std::int64_t at_ns = ns(message.log_time_ns);
     keep(playing, at_ns);
     const std::int64_t stepped_ns = playing.stepped_ns;
     const Heard heard = playing.take(message);
+    of_this_rig = of_this_rig || heard.topic != nullptr;
     note(heard, playing.feed, at_ns);
     const bool stepped = playing.stepped_ns != stepped_ns;
     if (stepped || heard.verdict.lost > 0 || heard.verdict.sent_late_ns > 0) {
@@ -73,6 +95,7 @@ RecordedRun::RecordedRun(const std::string& file, const FeedOptions& options,
   }));
   opened_.report_loss(playing.messages);
   if (playing.messages == 0) throw ConfigError(file, "no message", "a recording of a session");
+  if (!of_this_rig) refuse_rig(file, options.rig, opened_.reader.channels());
 }
 
 // A state is of use where the file is cut cleanly: all that is behind it was also heard later.

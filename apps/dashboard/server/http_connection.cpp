@@ -98,6 +98,11 @@ void HttpConnection::answer_read(error_code error) {
   }
   if (error) return close();
   const auto& request = parser_->get();
+  // Which of two would count is a matter of taste, and two programs on the way may differ.
+  for (const http::field once :
+       {http::field::host, http::field::origin, http::field::authorization, http::field::cookie}) {
+    if (request.count(once) > 1) return refuse(400, "each header once");
+  }
   const Question question{view(request.method_string()),
                           view(request.target()),
                           view(request[http::field::host]),

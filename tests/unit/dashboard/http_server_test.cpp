@@ -108,6 +108,14 @@ TEST_F(HttpServerTest, WhoIsRefusedIsClosed) {
   EXPECT_EQ(all.find("HTTP/1.1", 1), std::string::npos) << "one answer";
 }
 
+TEST_F(HttpServerTest, AHeaderThatComesTwiceIsRefused) {
+  for (const std::string twice : {"Host: evil\r\n", "Authorization: Bearer x\r\n"}) {
+    tcp::socket& stranger = client();
+    boost::asio::write(stranger, boost::asio::buffer("GET / HTTP/1.1\r\n" + twice + kSignedIn));
+    EXPECT_EQ(answer(stranger, "never").find("HTTP/1.1 400"), 0U) << twice;
+  }
+}
+
 TEST_F(HttpServerTest, StrangersThatAskAndNeverReadKeepNoStopOut) {
   pipeline(kRefused);
   tcp::socket& person = client();

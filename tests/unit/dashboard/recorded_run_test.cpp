@@ -127,6 +127,19 @@ TEST_F(RecordedRunTest, CountsAreThoseOfTheBusToTheLastDigit) {
   EXPECT_EQ(topics.at(1).at("sent_late").at("count"), 5);
 }
 
+TEST_F(RecordedRunTest, ARigThatTheFileDoesNotHoldIsRefused) {
+  record(session());
+  FeedOptions other;
+  other.rig = 2;
+  try {
+    RecordedRun sut(file_, other, {});
+    FAIL() << "a rig without a message looks healthy";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("--rig: got 2, of which"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("want one of 1"), std::string::npos);
+  }
+}
+
 // Oracle: a recording that holds nothing else.
 TEST_F(RecordedRunTest, AnyInstantIsThatOfARecordingWhichEndsThere) {
   const std::vector<Recorded> messages = session();
