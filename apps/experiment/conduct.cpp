@@ -10,6 +10,7 @@
 #include "apps/experiment/session_script.hpp"
 #include "apps/lab/check_options.hpp"
 #include "apps/lab/lab.hpp"
+#include "apps/libraries/report/plot/draw.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/system/process/remark.hpp"
 
@@ -79,6 +80,7 @@ std::optional<std::size_t> next_participant(const Folder& folder) {
 
 int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtime::Stop& stop) {
   check_gamepad(folder.design(), lab);
+  if (folder.design().control_model == kDiagnosed) report::require_gnuplot();  // a diagnosis draws
   folder.open_participant(index);
   Journal journal(folder.journal(index));
   const Plan plan = folder.plan(index);

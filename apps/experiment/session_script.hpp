@@ -73,6 +73,7 @@ class SessionScript {
   std::int64_t numbers_ = 0;  ///< of trials in this session's recording
   bool first_ = true;         ///< no tracking trial ran in this session
   std::optional<cancellation::ControlModel> augmented_;
+  double settled_s_ = 0.0;  ///< [s] until any of this session's models acts alone
   std::string ended_;
 };
 

@@ -108,6 +108,13 @@ void check_closing(const LabOptions& options) {
     throw ConfigError("--close", "live with identification.false_alarms_h 0",
                       "it with a watch on the model");
   }
+  // Cancellation's CC-20 and statistics' ST-22: twelve blocks of 4 s behind 3 s of settling.
+  constexpr double kLeast_s = 55.0;
+  if (options.protocol.trial_s < kLeast_s) {
+    throw ConfigError("--trial-seconds",
+                      fmt::format("{:g} with --close live", options.protocol.trial_s),
+                      "55 or more: the watch judges from 51 s of a trial on");
+  }
   report::require_gnuplot();  // the diagnosis draws
 }
 

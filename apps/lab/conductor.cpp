@@ -310,7 +310,9 @@ std::string Conductor::use(const cancellation::ControlModel& model) {
   given_ = cancellation::to_idl(model, cancellation::kFirstControlModel + models_++);
   ModelUse use(trouble_);
   run_stage(use);
-  return use.failure();
+  if (!use.failure().empty())
+    throw std::runtime_error("a model for the canceller: " + use.failure());
+  return use.refusal();
 }
 
 std::string Conductor::recording() {

@@ -17,4 +17,14 @@ cancellation::ControlModel control_model(const std::filesystem::path& file, std:
   return model;
 }
 
+double settled_after_s(const cancellation::ControlModel& model,
+                       const std::filesystem::path& config) {
+  const auto settings =
+      settings::load<cancellation::Config>(config / "cancellation.yaml", "cancellation");
+  const cancellation::ModelCheck check =
+      cancellation::check_model(model, cancellation::bounds(settings));
+  return kControlPeriod_s *
+         static_cast<double>(kModelNotice_ticks + check.settle_ticks + settings.fade_ticks);
+}
+
 }  // namespace stillhand::lab

@@ -15,4 +15,9 @@ namespace stillhand::lab {
 cancellation::ControlModel control_model(const std::filesystem::path& file, std::uint32_t rig,
                                          const std::filesystem::path& config);
 
+/// [s] from the canceller's answer to a model until that model alone acts: its notice, its slowest
+/// transient and the fade (cancellation, CC-4 and CC-15).  @throws ConfigError as control_model()
+double settled_after_s(const cancellation::ControlModel& model,
+                       const std::filesystem::path& config);
+
 }  // namespace stillhand::lab

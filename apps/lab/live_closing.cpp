@@ -4,14 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
+#include <stdexcept>
 
+#include "apps/lab/control_model.hpp"
 #include "apps/lab/pause_diagnosis.hpp"
 #include "apps/lab/typed_line.hpp"
+#include "services/core/contract/config_error.hpp"
 
 namespace stillhand::lab {
 namespace {
 
+constexpr double kBefore_s = 10.0;
 constexpr double kOffer_s = 30.0;
 
 bool lost_its_model(const session::TrialOutcome& outcome) {
@@ -34,9 +37,16 @@ bool LiveClosing::after(const session::TrialOutcome& outcome) {
 }
 
 bool LiveClosing::close() {
-  trials_.show({.kind = PromptKind::kIdentification});
-  const session::TrialOutcome identified =
-      trials_.run_between(closing_trials(options_.protocol).front());
+  const session::PlannedTrial pegged = closing_trials(options_.protocol).front();
+  trials_.say(
+      fmt::format("the arm is identified again in {:.0f} s: hold the stick as in the first "
+                  "identification",
+                  kBefore_s));
+  trials_.show({.kind = PromptKind::kIdentification,
+                .wait_s = kBefore_s + kTrialLead_s + options_.protocol.ramp_s});
+  trials_.rest("before the identification", kBefore_s, {});
+  if (trials_.interrupted()) return false;
+  const session::TrialOutcome identified = trials_.run_between(pegged);
   if (!identified.completed) return false;
   if (!identified.no_model.empty()) {
     trials_.say("the session goes on with its model: " + identified.no_model);
@@ -55,8 +65,9 @@ bool LiveClosing::close() {
 
 bool LiveClosing::takes(const PauseVerdict& verdict, std::int64_t number) {
   if (options_.headless || !TypedLine::possible()) {
-    trials_.say(fmt::format("C+ taken for trial {}, {}", number, verdict.found));
-    return true;
+    trials_.say(fmt::format("C+ {} for trial {}, {}", verdict.certain ? "taken" : "not taken",
+                            number, verdict.found));
+    return verdict.certain;
   }
   trials_.say(
       fmt::format("C+ offered for trial {}, {}; enter y within {:.0f} s to run it, else C "
@@ -72,13 +83,19 @@ bool LiveClosing::takes(const PauseVerdict& verdict, std::int64_t number) {
 bool LiveClosing::give_plus(std::int64_t number) {
   std::string refused;
   try {
-    refused = trials_.use(diagnosed_model(options_));
-  } catch (const std::exception& error) {
+    const cancellation::ControlModel plus = diagnosed_model(options_);
+    refused = trials_.use(plus);
+    if (refused.empty()) settle(plus);
+  } catch (const ConfigError& error) {
     refused = error.what();
   }
   if (refused.empty()) return true;
   trials_.say(fmt::format("C+ does not run in trial {}: {}", number, refused));
   return false;
+}
+
+void LiveClosing::settle(const cancellation::ControlModel& model) {
+  trials_.rest("the model settles", settled_after_s(model, options_.config), [] { return false; });
 }
 
 bool LiveClosing::run_again(bool plus) {
@@ -87,8 +104,14 @@ bool LiveClosing::run_again(bool plus) {
   if (plus) again.label = session::Condition::kCPlus;
   trials_.show({.kind = PromptKind::kTrial, .wait_s = kTrialLead_s + options_.protocol.ramp_s});
   if (!trials_.run_between(again).completed) return false;
+  if (!plus || trials_.interrupted()) return !trials_.interrupted();
   // What the plan still has begins with the session's own model, as it would have.
-  return !plus || trials_.use(cancellation::control_model(trials_.model().control)).empty();
+  const cancellation::ControlModel own = cancellation::control_model(trials_.model().control);
+  if (const std::string refused = trials_.use(own); !refused.empty()) {
+    throw std::runtime_error("the session's own model behind C+: " + refused);
+  }
+  settle(own);
+  return true;
 }
 
 }  // namespace stillhand::lab

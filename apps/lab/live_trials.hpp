@@ -34,8 +34,8 @@ class LiveTrials {
   /// @return nothing: its time is over, or a request for a start went on without an answer, or the
   ///         session is interrupted.  @throws std::runtime_error when a process is lost
   virtual std::optional<std::int64_t> ask(const Prompt& prompt, const std::string& what) = 0;
-  /// Waits between trials, until it is over, a request for a start, or the end.
-  /// @param over  looked at every 50 ms or sooner; empty: after its time
+  /// Waits between trials, until its time or the session is over.
+  /// @param over  ends it too, looked at every 50 ms or sooner; empty: a request for a start does
   virtual void rest(const std::string& what, double seconds, const std::function<bool()>& over) = 0;
   /// One line for the person at the terminal, at once.  It is not on the bus, where a dashboard
   /// would show it to everybody.
@@ -47,6 +47,7 @@ class LiveTrials {
   /// The model identified last.
   [[nodiscard]] virtual const identification::FeedthroughModel& model() const = 0;
   /// Gives the canceller a model.  @return why it was refused, or empty
+  /// @throws std::runtime_error when the canceller does not answer: which model it has is not known
   virtual std::string use(const cancellation::ControlModel& model) = 0;
   [[nodiscard]] virtual bool interrupted() const = 0;
 };

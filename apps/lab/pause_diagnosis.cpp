@@ -22,13 +22,17 @@ constexpr double kDiagnosisEnds_s = 1.0;
 
 std::filesystem::path folder_of(const LabOptions& options) { return options.out / kClosingFolder; }
 
-// The verb that a person would start after the session, below every process of the session.
+// The verb that a person would start after the session, below every process of the session.  It
+// ends with the lab, whatever ended that.
 Launch diagnosis_of(const LabOptions& options) {
   Launch launch;
   launch.name = "diagnosis";
-  launch.executable = "nice";
+  launch.executable = "setpriv";
   launch.log = options.out / "logs" / "closing.log";
-  launch.arguments = {"-n",
+  launch.arguments = {"--pdeathsig",
+                      "KILL",
+                      "nice",
+                      "-n",
                       "10",
                       (options.programs / "stillhand").string(),
                       "close-the-loop",

@@ -20,9 +20,24 @@ double unseen_s(const json& summary) {
   return seconds;
 }
 
+// The effects that are in C+; what the verdict names besides is left alone.
+std::string carried(const json& summary) {
+  std::string out;
+  for (const json& each : summary.at("treatments")) {
+    if (!each.at("cancelled").get<bool>()) continue;
+    out += (out.empty() ? "" : " and ") + each.at("kind").get<std::string>();
+  }
+  return out;
+}
+
 std::string why_not(const json& summary) {
-  const std::string kind = summary.at("verdict").at("kind");
-  if (kind == "none") return "nothing that counts is missing in it";
+  if (summary.at("verdict").at("kind") == "none") return "nothing that counts is missing in it";
+  const std::string kind = carried(summary);
+  if (kind.empty()) {
+    const json& left = summary.at("treatments").at(0);
+    return left.at("kind").get<std::string>() +
+           " is left alone: " + left.at("how").get<std::string>();
+  }
   if (const json& refused = summary.at("not_carried"); !refused.is_null()) {
     return kind + " is not carried: " + refused.get<std::string>();
   }
@@ -42,10 +57,11 @@ PauseVerdict pause_verdict(const std::string& text) {
   out.why_not = why_not(summary);
   if (!out.why_not.empty()) return out;
   const json& decision = summary.at("decision");
-  out.found = fmt::format("{}: leaves {} in place of {}, in {:.0f} s that no fit has seen",
-                          summary.at("verdict").at("kind").get<std::string>(),
-                          newton(decision.at("augmented")), newton(decision.at("linear")),
-                          unseen_s(summary));
+  out.certain = !decision.at("less_interval95").is_null();
+  out.found =
+      fmt::format("{}: leaves {} where a linear model leaves {}, in {:.0f} s that no fit has seen",
+                  carried(summary), newton(decision.at("augmented")), newton(decision.at("linear")),
+                  unseen_s(summary));
   return out;
 }
 

@@ -8,7 +8,8 @@ namespace stillhand::lab {
 /// What the diagnosis in the pause between two trials says.
 struct PauseVerdict {
   std::string why_not = {};  ///< why there is no C+ to offer, as a clause; empty: there is one
-  std::string found = {};    ///< what C+ leaves, and C, where no fit has seen the force
+  std::string found = {};  ///< what C+ leaves, and a linear model, where no fit has seen the force
+  bool certain = false;    ///< there is an interval of the gain, and it excludes none
 };
 
 /// Reads `summary.json` of `stillhand close-the-loop --pegged`.  C+ is on offer where something

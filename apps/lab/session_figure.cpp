@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/lab/summary_json.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 
 namespace stillhand::lab {
@@ -30,9 +31,10 @@ report::Panel panel(std::string title, std::string unit, double extent) {
 }
 
 // A picture is shown without its page: it says of which parts the rig was.
-std::string title_of(const session::TrialResult& trial, const std::string& rig_parts) {
-  const std::string title = std::string(session::name_of(trial.label)) +
-                            (trial.label == session::Condition::kB ? ", moving" : ", cancelled");
+std::string title_of(const session::TrialResult& trial, const session::SessionResult& result) {
+  const std::string& rig_parts = result.rig_parts;
+  const std::string title =
+      name_in(result, trial) + (trial.label == session::Condition::kB ? ", moving" : ", cancelled");
   if (rig_parts.empty()) return title;
   const std::size_t at = rig_parts.find("simulated: ");
   return title + " (devices" + (at == std::string::npos ? "" : "; " + rig_parts.substr(at)) + ")";
@@ -64,7 +66,7 @@ std::optional<report::Series> without_model(const session::TrialResult& trial, d
 report::Panel force_panel(const session::TrialResult& trial, const session::SessionResult& result,
                           double extent_n) {
   const session::Excerpt& excerpt = trial.excerpt;
-  report::Panel out = panel(title_of(trial, result.rig_parts), "force [N]", extent_n);
+  report::Panel out = panel(title_of(trial, result), "force [N]", extent_n);
   // Of a rig of devices nobody knows the feedthrough.
   const bool known = !excerpt.feedthrough_n.empty() && std::isfinite(excerpt.feedthrough_n.front());
   out.series = {
@@ -101,11 +103,11 @@ report::Panel hand_panel(const session::TrialResult& trial, Colour colour) {
 std::vector<report::Drawing> draw_session(const session::SessionResult& result,
                                           const std::filesystem::path& folder) {
   std::vector<const session::TrialResult*> shown;
-  for (const auto label :
-       {session::Condition::kB, session::Condition::kC, session::Condition::kCPlus}) {
-    const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
-    if (trial != result.trials.end()) shown.push_back(&*trial);
+  for (const session::TrialResult& trial : result.trials) {
+    using enum session::Condition;
+    if (trial.label == kB || trial.label == kC || trial.label == kCPlus) shown.push_back(&trial);
   }
+  std::ranges::stable_sort(shown, {}, &session::TrialResult::label);
   if (shown.empty()) return {};
   report::Figure figure;
   figure.name = kSessionFigure;

@@ -59,7 +59,7 @@ void add_budgets(const session::SessionResult& result, report::Page& page) {
   for (const session::TrialResult& trial : result.trials) {
     if (!trial.budget) continue;
     page.section("What is left");
-    page.table(session::budget_table(std::string(session::name_of(trial.label)), *trial.budget));
+    page.table(session::budget_table(name_in(result, trial), *trial.budget));
   }
 }
 

@@ -41,14 +41,6 @@ void print_model_changes(const std::vector<session::TrialOutcome>& outcomes) {
   for (const std::string& line : model_change_lines(outcomes)) std::printf("%s\n", line.c_str());
 }
 
-// With the trial's number, where C ran again.
-std::string name_in(const session::SessionResult& result, const session::TrialResult& trial) {
-  const std::string name = session::name_of(trial.label);
-  const bool once =
-      std::ranges::count(result.trials, trial.label, &session::TrialResult::label) == 1;
-  return once ? name : fmt::format("{} of trial {}", name, trial.number);
-}
-
 void print_budgets(const session::SessionResult& result) {
   for (const session::TrialResult& trial : result.trials) {
     if (!trial.budget) continue;

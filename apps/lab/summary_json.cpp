@@ -276,6 +276,13 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
   return lines;
 }
 
+std::string name_in(const session::SessionResult& result, const session::TrialResult& trial) {
+  const std::string name = session::name_of(trial.label);
+  const bool once =
+      std::ranges::count(result.trials, trial.label, &session::TrialResult::label) == 1;
+  return once ? name : fmt::format("{} of trial {}", name, trial.number);
+}
+
 std::vector<std::string> model_change_lines(const std::vector<session::TrialOutcome>& outcomes) {
   std::vector<std::string> lines;
   for (const session::TrialOutcome& outcome : outcomes) {

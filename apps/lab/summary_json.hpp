@@ -30,6 +30,8 @@ std::optional<double> settled_restoration_of(const session::SessionResult& resul
 /// them.
 std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result);
 
+/// "C"; where its condition ran twice, "C of trial 3".
+std::string name_in(const session::SessionResult& result, const session::TrialResult& trial);
 /// "C disturbed at 11.5 s: sensing was late by 73 ms, force 0 for 0.12 s": the longest five, one of
 /// each trial among them, and how to see all.
 std::vector<std::string> disturbance_lines(const session::SessionResult& result);

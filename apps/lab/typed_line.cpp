@@ -9,7 +9,11 @@
 
 namespace stillhand::lab {
 
-bool TypedLine::possible() { return isatty(STDIN_FILENO) != 0; }
+// The terminal stops a program in its background that reads it, or takes away what was typed.
+bool TypedLine::possible() {
+  const pid_t in_front = tcgetpgrp(STDIN_FILENO);  // -1: not the terminal that this session obeys
+  return isatty(STDIN_FILENO) != 0 && (in_front < 0 || in_front == getpgrp());
+}
 
 TypedLine::TypedLine() { tcflush(STDIN_FILENO, TCIFLUSH); }
 

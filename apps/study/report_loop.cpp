@@ -177,7 +177,7 @@ void add_cancellers(report::Page& page, const Analysis& analysis) {
   if (cancels_beyond) {
     text +=
         " C' uses the same model and adapts its gain and phase to the hand. C+ uses another model, "
-        "from a file.";
+        "of a file or of each session's diagnosis; where that found nothing, C's own.";
   }
   if (mitigates) {
     text +=

@@ -54,7 +54,7 @@ class LiveClosingTest(LabTestCase):
             "--undeclared-effect", ASYMMETRY, "--config", config, headless=False, typed=self.input,
             environment=self.display.environment)
         self.wait_for_line("the model no longer holds since", TRIAL_LIMIT_S)
-        self.wait_for_line("C+ offered for trial 3", PAUSE_LIMIT_S)
+        self.wait_for_line("C+ offered for trial 3, asymmetry", PAUSE_LIMIT_S)
         os.write(self.terminal, b"y\n")
         self.wait_for_line("C+ taken for trial 3", 30.0)
         self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 0, lab.errors())

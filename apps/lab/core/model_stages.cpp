@@ -38,7 +38,7 @@ Actions ModelUse::step(Seen& seen, std::int64_t now_ns) {
   if (wait != Wait::kOver) {
     failure_ = trouble_.why_stopped(seen, "the canceller did not answer within 5 s");
   } else if (answer->kind == EventKind::kModelRefused) {
-    failure_ = answer->text;
+    refusal_ = answer->text;
   }
   return {};
 }

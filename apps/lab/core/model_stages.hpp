@@ -31,13 +31,15 @@ class ModelUse final : public Stage {
   explicit ModelUse(Trouble& trouble) : trouble_(trouble) {}
 
   Actions step(Seen& seen, std::int64_t now_ns) override;
-  /// Why the canceller did not take the model; empty: it took it.
+  /// Why the canceller refused the model; empty: it took it, or did not answer.
+  [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
+  /// Why it did not answer; empty: it did.
   [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
 
  private:
   Trouble& trouble_;
   std::int64_t limit_ns_ = -1;  // -1: before the first step
-  std::string failure_;
+  std::string refusal_, failure_;
 };
 
 /// Waits until the recorder's disk has a trial, at most 10 s.

@@ -13,8 +13,8 @@ Actions Rest::step(Seen& seen, std::int64_t now_ns) {
     starts_ = seen.requests.starts();
   }
   Actions actions;
-  const bool over =
-      now_ns >= limit_ns_ || seen.requests.starts() != starts_ || (is_there_ && is_there_());
+  const bool ended = is_there_ ? is_there_() : seen.requests.starts() != starts_;
+  const bool over = now_ns >= limit_ns_ || ended;
   if (trouble_.wait(over, seen, limit_ns_ + 1, now_ns) != Wait::kGoesOn) {
     finish();
     return actions;

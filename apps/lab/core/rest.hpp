@@ -10,8 +10,9 @@
 
 namespace stillhand::lab {
 
-/// A rest between two trials.  It ends after its time, when what it waits for is there, with a
-/// request for a start, or when there is trouble, which the next stage reports.
+/// A rest between two trials.  It ends after its time, or when there is trouble, which the next
+/// stage reports; one that waits for something when that is there, any other with a request for a
+/// start.
 class Rest final : public Stage {
  public:
   /// @param what     for the person at the terminal

@@ -210,8 +210,9 @@ TEST_F(ProgressTest, AJournalThatWasChangedByHandIsRefused) {
   EXPECT_THROW(static_cast<void>(progress({session(2)})), ConfigError);  // a session is missing
   EXPECT_THROW(static_cast<void>(progress({{.kind = EntryKind::kBreakOver, .step = 0}})),
                ConfigError);
-  EXPECT_THROW(static_cast<void>(progress({{.kind = EntryKind::kRepeatAsked, .step = 99}})),
-               ConfigError);
+  for (const EntryKind kind : {EntryKind::kRepeatAsked, EntryKind::kTrialEnded}) {
+    EXPECT_THROW(static_cast<void>(progress({{.kind = kind, .step = 99}})), ConfigError);
+  }
   for (const std::string line : {"{}", "{\"time\":\"t\",\"what\":\"dance\"}", "x",
                                  "{\"time\":\"t\",\"what\":\"note\",\"name\":\"Ann\"}",
                                  "{\"time\":\"t\",\"what\":\"note\",\"step\":1.5}",

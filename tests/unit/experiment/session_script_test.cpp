@@ -60,10 +60,10 @@ class FakeTrials final : public lab::LiveTrials {
   const session::TrialOutcome& run_between(const session::PlannedTrial& planned) override {
     return run_once(planned);
   }
-  void rest(const std::string& /*what*/, double /*seconds*/,
-            const std::function<bool()>& over) override {
+  void rest(const std::string& what, double seconds, const std::function<bool()>& over) override {
     count();
-    while (over && !over()) std::this_thread::yield();
+    if (what == "rest") rested.push_back(seconds);
+    while (what.starts_with("diagnosis") && !over()) std::this_thread::yield();
   }
   void say(const std::string& /*line*/) override {}
   void note(const std::string& /*text*/) override {}
@@ -81,6 +81,7 @@ class FakeTrials final : public lab::LiveTrials {
   int asked_prompts = 0;
   int models = 0;
   std::vector<cancellation::ControlModel> used;
+  std::vector<double> rested;  ///< [s]
   bool passes_over = false;
 
  private:
@@ -96,6 +97,9 @@ class FakeTrials final : public lab::LiveTrials {
 class SessionScriptTest : public testing::Test {
  protected:
   SessionScriptTest() {
+    std::filesystem::create_directory(root_ / "config");
+    write("config/cancellation.yaml", "");
+    lab_.config = root_ / "config";
     design_.participants = 6;
     design_.blocks = 2;
     design_.rest_s = 10.0;
@@ -105,6 +109,9 @@ class SessionScriptTest : public testing::Test {
     design_.questions = {
         {"effort", Question::After::kTrial, "How hard was it?", "not at all", "very", 7},
         {"sick", Question::After::kEnd, "How do you feel?", "well", "sick", 9}};
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(root_ / name) << text;
   }
   /// A new folder with the orders of a seed.
   void make(std::uint64_t order_seed) {
@@ -181,10 +188,9 @@ class DiagnosedTest : public SessionScriptTest {
     design_.comparisons = {};
     design_.control_model = kDiagnosed;
     design_.blocks = 1;
-    for (const char* each : {"logs", "bin", "config", "answer"}) {
+    for (const char* each : {"logs", "bin", "answer"}) {
       std::filesystem::create_directory(root_ / each);
     }
-    write("config/cancellation.yaml", "");
     write("bin/stillhand", "#!/bin/sh\nfor out; do :; done\nmkdir -p \"$out\"\ncp " +
                                (root_ / "answer").string() + "/* \"$out\"\n");
     std::filesystem::permissions(root_ / "bin/stillhand", std::filesystem::perms::owner_all);
@@ -192,16 +198,17 @@ class DiagnosedTest : public SessionScriptTest {
           cancellation::control_model_json(cancellation::control_model({1000.0, {3.2}, {1.0}}), 1));
     lab_.out = root_.path();
     lab_.programs = root_ / "bin";
-    lab_.config = root_ / "config";
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(root_ / name) << text;
   }
   /// First gain of the models that the session's trials got, in order, and whether it has a map.
   std::vector<std::pair<double, bool>> given() {
     make(3);
     FakeTrials trials;
     EXPECT_TRUE(run(trials));
+    // Notice, settling (a tick) and fade first, whatever the condition is, then the rest of the rest.
+    constexpr double kSettles_s = 0.250 + 0.001 + 0.250;
+    constexpr double kLeft_s = 10.0 - kSettles_s;
+    EXPECT_THAT(trials.rested, testing::Pointwise(testing::DoubleNear(1e-9),
+                                                  {kSettles_s, kSettles_s, kLeft_s, kSettles_s, kLeft_s}));
     std::vector<std::pair<double, bool>> out;
     for (const auto& model : trials.used) {
       const cancellation::InputPath& input = model.inputs.at(0);

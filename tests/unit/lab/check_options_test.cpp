@@ -68,6 +68,9 @@ TEST_F(CheckOptionsTest, ClosingLiveRehearsesTheTrialsThatMayCome) {
   options_.close_live = true;
   EXPECT_THAT(refusal(), StartsWith("--close: got live without the condition C"));
   options_.protocol.conditions = session::parse_conditions("A,C");
+  options_.protocol.trial_s = 54.0;
+  EXPECT_THAT(refusal(), StartsWith("--trial-seconds: got 54 with --close live"));
+  options_.protocol.trial_s = 55.0;
   EXPECT_EQ(check_options(options_).size(), 4u);  // identification and C, each of them twice
   options_.model = "m.json";
   EXPECT_THAT(refusal(), StartsWith("--close live: got --model with it"));

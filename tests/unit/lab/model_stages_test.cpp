@@ -97,14 +97,16 @@ TEST_F(ModelUseTest, GivesTheModelWithNoticeAndIsOverWhenItIsLoaded) {
   step(sut_);
   EXPECT_TRUE(sut_.over());
   EXPECT_THAT(sut_.failure(), IsEmpty());
+  EXPECT_THAT(sut_.refusal(), IsEmpty());
 }
 
-TEST_F(ModelUseTest, ARefusalIsAFailureWithItsReason) {
+TEST_F(ModelUseTest, ARefusalIsAnAnswerWithItsReason) {
   step(sut_);
   event(EventKind::kModelRefused, "cancellation", "model gain is above the bound");
   step(sut_);
   EXPECT_TRUE(sut_.over());
-  EXPECT_EQ(sut_.failure(), "model gain is above the bound");
+  EXPECT_EQ(sut_.refusal(), "model gain is above the bound");
+  EXPECT_THAT(sut_.failure(), IsEmpty());
 }
 
 TEST_F(ModelUseTest, NoAnswerIsAFailureAfterFiveSeconds) {

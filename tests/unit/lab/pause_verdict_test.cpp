@@ -11,7 +11,10 @@ namespace {
 TEST(PauseVerdictTest, CPlusThatLeavesLessIsOnOffer) {
   const PauseVerdict sut = pause_verdict(pause_summary().dump());
   EXPECT_EQ(sut.why_not, "");
-  EXPECT_EQ(sut.found, "dead_zone: leaves 0.81 N in place of 1.46 N, in 36 s that no fit has seen");
+  EXPECT_EQ(
+      sut.found,
+      "dead_zone: leaves 0.81 N where a linear model leaves 1.46 N, in 36 s that no fit has seen");
+  EXPECT_TRUE(sut.certain);
 }
 
 TEST(PauseVerdictTest, WhatTheLoopDoesNotKeepIsNotOnOffer) {
@@ -28,6 +31,23 @@ TEST(PauseVerdictTest, WhatLeavesMoreIsNotOnOffer) {
   summary["decision"]["less"] = -0.026;
   EXPECT_EQ(pause_verdict(summary.dump()).why_not,
             "C+ (dead_zone) would leave 1.50 N where it leaves 1.46 N");
+}
+
+TEST(PauseVerdictTest, AGainWithoutAnIntervalIsOnOfferAndNotCertain) {
+  auto summary = pause_summary();
+  summary["decision"]["less_interval95"] = nullptr;
+  const PauseVerdict sut = pause_verdict(summary.dump());
+  EXPECT_EQ(sut.why_not, "");
+  EXPECT_FALSE(sut.certain);
+}
+
+TEST(PauseVerdictTest, NamesWhatIsCancelledAlone) {
+  auto summary = pause_summary();
+  summary["treatments"] = {{{"kind", "tone"}, {"cancelled", false}, {"how", "a fit lacks it"}},
+                           {{"kind", "asymmetry"}, {"cancelled", true}, {"how", "in the body"}}};
+  EXPECT_EQ(pause_verdict(summary.dump()).found.find("asymmetry: "), 0u);
+  summary["treatments"].erase(1);
+  EXPECT_EQ(pause_verdict(summary.dump()).why_not, "tone is left alone: a fit lacks it");
 }
 
 TEST(PauseVerdictTest, NothingMissingNothingOnOffer) {

@@ -47,6 +47,10 @@ TEST_F(RestTest, WhatItWaitsForEndsIt) {
   Rest sut("diagnosis", 10.0, trouble_, [&] { return is_there; });
   step(sut);
   EXPECT_FALSE(sut.over());
+  // A start cancels a pause, too: it must not throw away what is waited for.
+  seen_.requests.take({Action::kStart, 1, "desk", ""}, false);
+  step(sut);
+  EXPECT_FALSE(sut.over());
   is_there = true;
   step(sut);
   EXPECT_TRUE(sut.over());

@@ -18,16 +18,18 @@ const Step& Progress::step_of(const Entry& entry, StepKind kind) const {
 }
 
 void Progress::take_trial(const Entry& entry) {
-  if (entry.step < 0 || !entry.completed) return;  // identification, or to be run again
+  if (entry.step < 0) return;  // identification
   const auto step = static_cast<std::size_t>(entry.step);
-  if (step < plan_.size() && plan_[step].kind == StepKind::kPractice) {
+  const bool practice = step < plan_.size() && plan_[step].kind == StepKind::kPractice;
+  if (!practice) step_of(entry, StepKind::kTrial);
+  if (!entry.completed) return;  // it is run again
+  if (practice) {
     practice_.push_back(entry.dwell_ratio.value_or(0.0));
     in_a_row_ = practice_.back() >= design_.practice.dwell_ratio ? in_a_row_ + 1 : 0;
     reached_ = reached_ || in_a_row_ >= design_.practice.in_a_row;
     if (reached_ || practice_trials() >= design_.practice.most_trials) done_.insert(step);
     return;
   }
-  step_of(entry, StepKind::kTrial);
   done_.insert(step);
   last_trial_ = step;
 }

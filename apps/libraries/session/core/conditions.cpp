@@ -64,7 +64,8 @@ std::vector<ConditionRow> rows() {
       row("C'", "", "following", kExperimentConditions, Means::kCanceller, {hand(PartKind::kForce)},
           "as C, and the model follows an average hand"),
       row("C+", "", "augmented", kExperimentConditions, Means::kCanceller, {force},
-          "platform moves, motor cancels by the model that the experiment was given"),
+          "platform moves, motor cancels by another model, of a file or of the session's "
+          "diagnosis; where that finds nothing, C's own"),
       row("D", "", "command filter", kStudyConditions, Means::kCommandFilter,
           {hand(PartKind::kPredictedSignal)}, kTakenOff),
       row("E", "", "damped stick", kStudyConditions, Means::kNone, {},
