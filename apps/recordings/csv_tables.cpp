@@ -118,7 +118,7 @@ class CsvFolder : public TableFile {
  public:
   explicit CsvFolder(const std::filesystem::path& folder) : folder_(folder, "--csv") {}
 
-  std::unique_ptr<TableSink> add(const TopicTable& table) override {
+  std::unique_ptr<TableSink> add(const TopicTable& table, std::uint64_t /*rows*/) override {
     return std::make_unique<CsvSink>(table, folder_.path() / (table.name + ".csv"));
   }
   void close() override {}  // each topic has a file of its own

@@ -86,8 +86,10 @@ class Exporter {
  public:
   Exporter(const std::string& path, const ExportOptions& options)
       : options_(options), recording_(path, options.stopped), schemas_(recording_) {
-    // A place that cannot be written is refused before the work.
-    const report::ResultFiles checked({{"--mat", options.mat}, {"--hdf5", options.hdf5}}, {path});
+    // A place that cannot be written, and two outputs of one name, are refused before the work.
+    const report::ResultFiles checked(
+        {{"--mat", options.mat}, {"--hdf5", options.hdf5}, {"--lateness", options.lateness}},
+        {path});
     (void)checked;
     open_outlets();
   }
@@ -194,8 +196,20 @@ class Exporter {
       const TopicTable table{outlet->result.name, outlet->topic, outlet->type->name,
                              outlet->columns->columns()};
       outlet->result.columns = table.columns.size() + 4;
-      for (auto& file : files_) outlet->sinks.push_back(file->add(table));
+      const std::uint64_t rows = messages_of(*outlet);
+      for (auto& file : files_) outlet->sinks.push_back(file->add(table, rows));
     }
+  }
+
+  // By the file's statistics; a damaged file may hold fewer.
+  [[nodiscard]] std::uint64_t messages_of(const Outlet& outlet) const {
+    const auto& counts = recording_.reader.statistics().channel_message_counts;
+    std::uint64_t messages = 0;
+    for (const auto& [id, of] : by_channel_) {
+      const auto count = counts.find(id);
+      if (of == &outlet && count != counts.end()) messages += count->second;
+    }
+    return messages;
   }
 
   void write() {

@@ -16,7 +16,8 @@ struct ExportOptions {
   std::filesystem::path hdf5;  ///< file
   /// Names or patterns (* any text, ? one character); empty: every topic.
   std::vector<std::string> topics;
-  Stopped stopped = {};  ///< true: give up
+  Stopped stopped = {};                 ///< true: give up
+  std::filesystem::path lateness = {};  ///< file of the caller; none of the others is in its place
 };
 
 /// The result of one topic.

@@ -162,7 +162,7 @@ class Hdf5File : public TableFile {
         file_(H5Fcreate(pending_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
               path_) {}
 
-  std::unique_ptr<TableSink> add(const TopicTable& table) override {
+  std::unique_ptr<TableSink> add(const TopicTable& table, std::uint64_t /*rows*/) override {
     return std::make_unique<Hdf5Sink>(file_, table, path_);
   }
   void close() override {

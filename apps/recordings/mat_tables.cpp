@@ -159,16 +159,24 @@ class MatSink : public TableSink {
       column->take(cell);
       bytes_ += newest_bytes(*column++);
     });
-    if (bytes_ < kMostBytes) return;
+    if (bytes_ >= kMostBytes) refuse();
+  }
+
+  void finish() override { file_.write(structure()); }
+
+  /// Texts are counted as they come; numbers are known before.
+  void check(std::uint64_t rows) const {
+    if (rows * heads_.size() >= kMostBytes / sizeof(double)) refuse();
+  }
+
+ private:
+  [[noreturn]] void refuse() const {
     throw std::runtime_error(file_.place() + ": " + table_.topic +
                              " is larger than the 2 GiB for each topic that a MATLAB file "
                              "allows: use --hdf5, which has no such limit, or --topics to leave "
                              "topics out");
   }
 
-  void finish() override { file_.write(structure()); }
-
- private:
   Variable structure() {
     std::vector<const char*> names;
     for (const ColumnHead& head : heads_) names.push_back(head.name.c_str());
@@ -199,8 +207,10 @@ class MatFile : public TableFile {
  public:
   explicit MatFile(const std::string& path) : pending_(path), file_(pending_.path(), path) {}
 
-  std::unique_ptr<TableSink> add(const TopicTable& table) override {
-    return std::make_unique<MatSink>(file_, table);
+  std::unique_ptr<TableSink> add(const TopicTable& table, std::uint64_t rows) override {
+    auto sink = std::make_unique<MatSink>(file_, table);
+    sink->check(rows);
+    return sink;
   }
   void close() override { file_.close(); }
   void publish() override { pending_.publish(); }

@@ -148,7 +148,7 @@ void add_recover(CLI::App& cli, int& status) {
 
 struct ExportArguments {
   std::string recording;
-  std::filesystem::path ros2bag, lateness;
+  std::filesystem::path ros2bag;
   ExportOptions options;
 };
 
@@ -173,7 +173,7 @@ int run_ros2_bag(const ExportArguments& arguments, const Stopped& stopped) {
 
 // The channels of lateness, one table of the whole session.
 int run_lateness(const ExportArguments& arguments) {
-  report::ResultFiles files({{"--lateness", arguments.lateness}}, {arguments.recording});
+  report::ResultFiles files({{"--lateness", arguments.options.lateness}}, {arguments.recording});
   const session::SessionRecording recorded = session::read_session(arguments.recording);
   if (!recorded.damage.empty()) {
     runtime::remark(fmt::format("{}: damaged in {} places, and what was lost counts as late: {}",
@@ -186,7 +186,7 @@ int run_lateness(const ExportArguments& arguments) {
   }
   files.set("--lateness", recording::to_csv(rows));
   files.publish();
-  fmt::print("{}: {} rows of {} channels\n", arguments.lateness.string(), rows.row_count(),
+  fmt::print("{}: {} rows of {} channels\n", arguments.options.lateness.string(), rows.row_count(),
              rows.columns.size());
   return 0;
 }
@@ -197,15 +197,11 @@ int run_export(const ExportArguments& arguments) {
   options.stopped = [&stop] { return stop.requested(); };
   if (!arguments.ros2bag.empty()) return run_ros2_bag(arguments, options.stopped);
   const bool tables = !options.csv.empty() || !options.mat.empty() || !options.hdf5.empty();
-  if (!arguments.lateness.empty() && !tables) return run_lateness(arguments);
+  if (!arguments.options.lateness.empty() && !tables) return run_lateness(arguments);
   if (!tables) {
     throw ConfigError("export", "no format",
                       "--csv DIR, --mat FILE, --hdf5 FILE, --ros2bag FILE or --lateness FILE");
   }
-  // Two outputs of one name, before the work.
-  const report::ResultFiles checked(
-      {{"--mat", options.mat}, {"--hdf5", options.hdf5}, {"--lateness", arguments.lateness}},
-      {arguments.recording});
   const Exported exported = export_recording(arguments.recording, options);
   fmt::print("{:<40} {:>12} {:>9}\n", "table", "rows", "columns");
   for (const ExportedTopic& topic : exported.topics) {
@@ -220,7 +216,7 @@ int run_export(const ExportArguments& arguments) {
   for (const std::string& reason : exported.left_out) {
     runtime::remark("left out: " + reason);
   }
-  return arguments.lateness.empty() ? 0 : run_lateness(arguments);
+  return arguments.options.lateness.empty() ? 0 : run_lateness(arguments);
 }
 
 void add_export(CLI::App& cli, int& status) {
@@ -237,7 +233,7 @@ void add_export(CLI::App& cli, int& status) {
   verb->add_option("--hdf5", arguments->options.hdf5, "HDF5 file, one group for each topic");
   verb->add_option("--ros2bag", arguments->ros2bag,
                    "MCAP file with messages of ROS 2 (sensor_msgs/Imu and so on), of a session");
-  verb->add_option("--lateness", arguments->lateness,
+  verb->add_option("--lateness", arguments->options.lateness,
                    "CSV file with what came late in each tick of a session: age of the answers, "
                    "lost ticks, ...");
   verb->add_option("--topics", arguments->options.topics,

@@ -60,7 +60,9 @@ class TableFile {
  public:
   virtual ~TableFile() = default;
   /// One call a topic, before any row.
-  virtual std::unique_ptr<TableSink> add(const TopicTable& table) = 0;
+  /// @param rows  as many as the recording says that it holds; 0: that is not known
+  /// @throws std::runtime_error where the file cannot hold as many
+  virtual std::unique_ptr<TableSink> add(const TopicTable& table, std::uint64_t rows) = 0;
   /// The sinks have finished: everything is in the file.
   virtual void close() = 0;
   /// To its place, after close() of every file that is to appear with it.

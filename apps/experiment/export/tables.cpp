@@ -25,7 +25,7 @@ class Table {
  public:
   Table(recordings::TableFile& file, const std::string& name, const std::string& title,
         std::vector<MessageColumn> columns)
-      : sink_(file.add({name, title, "table", std::move(columns), false})) {}
+      : sink_(file.add({name, title, "table", std::move(columns), false}, 0)) {}
 
   void add(const std::vector<Cell>& cells) { sink_->take({0, 0, 0, 0, cells}); }
   void finish() { sink_->finish(); }

@@ -12,6 +12,7 @@
 
 #include "apps/recordings/column_names.hpp"
 #include "apps/recordings/csv_tables.hpp"
+#include "apps/recordings/mat_tables.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
 namespace stillhand::recordings {
@@ -82,7 +83,7 @@ class CsvTablesTest : public FolderTest {
                       const std::vector<std::vector<Cell>>& rows,
                       const std::vector<std::int64_t>& times_ns) {
     const auto sut = csv_tables(path("out"));
-    const auto sink = sut->add({"table", "topic", "type", columns});
+    const auto sink = sut->add({"table", "topic", "type", columns}, 1);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       sink->take({times_ns[i], 1, 2, 3, rows[i]});
     }
@@ -115,13 +116,24 @@ TEST_F(CsvTablesTest, TimesHaveEveryNanosecondAndTheirSign) {
   for (std::size_t i = 0; i < want.size(); ++i) EXPECT_EQ(line(text, i + 1), want[i] + ",1,2,3");
 }
 
+// 8 bytes a number: 2^25 rows of 4 columns of a message's own and 4 of its payload.
+TEST_F(CsvTablesTest, AMatlabFileThatCannotHoldTheRowsIsRefusedBeforeTheFirst) {
+  const auto sut = mat_tables(path("large.mat"));
+  const std::vector<MessageColumn> columns(4, {"x", "N", CellKind::kReal});
+  const TopicTable table{"table", "topic", "type", columns};
+  EXPECT_NO_THROW((void)sut->add(table, (1U << 25) - 1));
+  EXPECT_THROW((void)sut->add(table, 1U << 25), std::runtime_error);
+  EXPECT_NO_THROW((void)csv_tables(path("large"))->add(table, 1U << 25));
+}
+
 TEST_F(CsvTablesTest, ATableOfItsOwnHasNoColumnOfAMessage) {
   const auto sut = csv_tables(path("own"));
   const auto sink = sut->add({"table",
                               "title",
                               "table",
                               {{"t", "s", CellKind::kReal}, {"code", "-", CellKind::kText}},
-                              false});
+                              false},
+                             1);
   sink->take({0, 0, 0, 0, std::vector<Cell>{Cell(0.25), Cell(std::string_view("P07"))}});
   sink->finish();
   sut->close();
