@@ -27,12 +27,15 @@
 #include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
 #include "services/core/diagnosis/verdict_stability.hpp"
+#include "services/core/diagnosis/working_set.hpp"
+#include "services/core/next_run/tie.hpp"
 #include "services/files/diagnosis/model_file.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/system/process/run_jobs.hpp"
 #include "services/system/process/shipped.hpp"
 #include "services/system/process/stop.hpp"
+#include "version.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -78,18 +81,44 @@ void check_plan_is_of(const std::filesystem::path& plan, const std::vector<std::
   }
 }
 
-// The last recording is the run of the plan.
-std::optional<BrokenTie> tie_of(const Arguments& arguments,
-                                std::vector<diagnosis::Measurement> parts) {
+// Before the recordings are read.
+std::optional<next_run::PlanFile> plan_of(const Arguments& arguments) {
   if (arguments.plan.empty()) return std::nullopt;
-  if (parts.size() < 2) {
+  if (arguments.recordings.size() < 2) {
     throw ConfigError("--plan", "one recording with it",
                       "the recordings that left the tie, and then the run of the plan");
   }
   check_plan_is_of(arguments.plan, {arguments.recordings.begin(), arguments.recordings.end() - 1});
+  return next_run::read_plan(arguments.plan, kVersion);
+}
+
+// The last recording is the run of the plan.
+std::optional<BrokenTie> tie_of(const std::optional<next_run::PlanFile>& plan,
+                                std::vector<diagnosis::Measurement> parts) {
+  if (!plan) return std::nullopt;
   const diagnosis::Measurement run = std::move(parts.back());
   parts.pop_back();
-  return broken_tie(next_run::read_plan(arguments.plan), measurement::join(std::move(parts)), run);
+  return broken_tie(*plan, measurement::join(std::move(parts)), run);
+}
+
+// The tied kinds of each effect are those that the whole recording leaves, as `plan-run` judges
+// them; the search alone is more lenient (DG-17).
+std::vector<next_run::Tie> judge_ties(const diagnosis::Measurement& measurement,
+                                      diagnosis::Diagnosis& result) {
+  if (result.no_model) return {};
+  const std::vector<std::string>& inputs = result.options.inputs;
+  const diagnosis::Signals signals(diagnosis::working_set(measurement, inputs), inputs,
+                                   result.options.output);
+  std::vector<next_run::Tie> ties = next_run::ties_of(result, signals);
+  for (diagnosis::FoundEffect& effect : result.effects) effect.ties.clear();
+  for (const next_run::Tie& tie : ties) {
+    diagnosis::FoundEffect& effect = result.effects[tie.effect];
+    for (const next_run::Candidate& each : tie.left) {
+      if (each.cause().kind != effect.effect.kind) effect.ties.push_back(each.cause().kind);
+    }
+    effect.evidence += "; " + tie.in_words();
+  }
+  return ties;
 }
 
 // Of one input; a mass is no sum of several.
@@ -109,6 +138,7 @@ int run(const Arguments& arguments) {
   check_different(arguments.recordings);
   report::ResultFiles files({{"--save", arguments.save}, {"--json", arguments.json}},
                             {arguments.recordings.begin(), arguments.recordings.end()});
+  const std::optional<next_run::PlanFile> plan = plan_of(arguments);
   std::optional<report::StagedFolder> folder;
   if (!arguments.report.empty()) {
     report::require_gnuplot();
@@ -119,7 +149,7 @@ int run(const Arguments& arguments) {
   });
   std::vector<diagnosis::Measurement> parts =
       read_recordings(arguments.recordings, arguments.read, arguments.options);
-  const std::optional<BrokenTie> tie = tie_of(arguments, parts);
+  const std::optional<BrokenTie> tie = tie_of(plan, parts);
   const diagnosis::Measurement measurement = measurement::join(std::move(parts));
   const std::vector<RecordedSplit> splits =
       recorded_splits(arguments.recordings, arguments.read.trial, arguments.config);
@@ -136,8 +166,11 @@ int run(const Arguments& arguments) {
   if (arguments.stability > 0) {
     result.stability = diagnosis::verdict_stability(measurement, options, arguments.stability);
   }
+  const std::vector<next_run::Tie> ties = judge_ties(measurement, result);
   progress.finish();
   note_unchecked(measurement, result);
+  // The sentence that the verdict is has been a note of the samples.
+  if (result.no_model) std::erase(result.notes, result.no_model->why);
   if (result.no_model && files.wants("--save")) {
     throw ConfigError("--save", "no model (" + result.no_model->why + ")",
                       "no --save, or recordings whose inputs explain the output");
@@ -161,9 +194,7 @@ int run(const Arguments& arguments) {
     report::say_next(measurement::step_for(result.no_model->reason));
     return 0;
   }
-  const bool tied =
-      std::ranges::any_of(result.effects, [](const auto& effect) { return !effect.ties.empty(); });
-  if (tied && arguments.plan.empty()) {
+  if (arguments.plan.empty() && !std::ranges::all_of(ties, &next_run::Tie::broken)) {
     report::say_next("stillhand plan-run finds the motion that settles the tie");
   }
   report::say_next(arguments.save.empty()

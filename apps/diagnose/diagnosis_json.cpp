@@ -55,13 +55,6 @@ std::string sizes_in_words(const FoundEffect& found) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-// The evidence, and the kinds that explain the data as well.
-std::string with_ties(const Diagnosis& diagnosis, const FoundEffect& found) {
-  const std::string evidence = shown_sentence(found.evidence, diagnosis.output_unit);
-  if (found.ties.empty()) return evidence;
-  return fmt::format("{}; as good an explanation: {}", evidence, fmt::join(found.ties, ", "));
-}
-
 // True, false, or the share.
 ordered_json carried_json(double share) {
   if (share > 0.0 && share < 1.0) return share;
@@ -93,7 +86,7 @@ ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
           {"ci95", {found.after.low, found.after.high}},
           {"force_n", force_json(diagnosis, found)},
           {"counts", found.counts},
-          {"evidence", with_ties(diagnosis, found)},
+          {"evidence", shown_sentence(found.evidence, diagnosis.output_unit)},
           {"form", found.effect.form},
           {"signals", found.effect.channels},
           {"p", found.p},
@@ -248,7 +241,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
     add("effect {}      {}{}: {:.4g} -> {:.4g} {} (95 %: {:.4g} to {:.4g})\n", e + 1,
         found.effect.kind, of, found.before.rmse, found.after.rmse, unit, found.after.low,
         found.after.high);
-    add("              {}\n", with_ties(diagnosis, found));
+    add("              {}\n", shown_sentence(found.evidence, diagnosis.output_unit));
     if (!found.sizes.empty()) add("              {}\n", sizes_in_words(found));
     add("              {}\n", force_text(diagnosis, found));
     add("              {}\n", carried_in_words(found));

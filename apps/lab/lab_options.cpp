@@ -7,6 +7,7 @@
 #include "services/files/settings/load.hpp"
 #include "services/system/process/remark.hpp"
 #include "services/system/process/shipped.hpp"
+#include "version.hpp"
 
 namespace stillhand::lab {
 
@@ -17,7 +18,7 @@ void set_places(LabOptions& options) {
 }
 
 void take_plan(const std::filesystem::path& path, LabOptions& options) {
-  const next_run::PlanFile plan = next_run::read_plan(path);
+  const next_run::PlanFile plan = next_run::read_plan(path, kVersion);
   options.protocol.planned = true;
   options.protocol.conditions.clear();
   options.protocol.identify_s = plan.seconds;

@@ -9,6 +9,7 @@
 
 #include "services/core/recording/csv.hpp"
 #include "services/core/signal/spectrum.hpp"
+#include "services/files/digest/digest.hpp"
 #include "services/files/next_run/plan_file.hpp"
 
 namespace stillhand::plan_run {
@@ -132,6 +133,7 @@ std::string plan_json(const Planned& planned) {
                     {"probability_repeated", planned.plan.probability_repeated},
                     {"longer", longer_json(planned)},
                     {"ride", next_run::kRideName},
+                    {"ride_sha256", rig::sha256(ride_csv(planned.plan.ride))},
                     {"motion", motion_json(planned)},
                     {"limits", limits_json(planned)},
                     {"designs_tried", planned.plan.tried},

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -23,6 +24,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 #include "services/core/motion/motion_generator.hpp"
+#include "services/core/next_run/tie.hpp"
 #include "services/files/next_run/plan_file.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/check_number.hpp"
@@ -33,8 +35,6 @@
 
 namespace stillhand::plan_run {
 namespace {
-
-constexpr double kLongest_s = 600.0;
 
 struct Arguments {
   std::vector<std::string> recordings;
@@ -59,7 +59,8 @@ next_run::Bounds bounds_of(const Arguments& arguments) {
 std::vector<double> longer_s(const Arguments& arguments) {
   std::vector<double> seconds;
   for (const double times : {2.0, 4.0}) {
-    if (times * arguments.seconds <= kLongest_s) seconds.push_back(times * arguments.seconds);
+    if (times * arguments.seconds <= next_run::kLongest_s)
+      seconds.push_back(times * arguments.seconds);
   }
   return seconds;
 }
@@ -72,23 +73,15 @@ void check_input(const diagnosis::Signals& signals) {
                     "the platform's acceleration first, in m/s^2");
 }
 
-// What is left of the candidates, if that is more than one.
+// The strongest effect's that the recording does not break.
 next_run::Contest tie_of(const diagnosis::Diagnosis& verdict, const diagnosis::Signals& signals) {
-  constexpr const char* kWanted = "a recording that two causes explain equally well";
-  auto candidates = next_run::tied_candidates(verdict, signals);
-  if (candidates.size() < 2) {
-    throw ConfigError("REC", fmt::format("a verdict without a tie ({})", verdict.verdict()),
-                      kWanted);
-  }
-  const std::size_t count = candidates.size();
-  candidates = next_run::Contest(std::move(candidates), signals).still_tied();
-  if (candidates.size() < 2) {
-    throw ConfigError("REC",
-                      fmt::format("one that breaks the tie itself: of {} causes it leaves {}",
-                                  count, next_run::name_of(candidates.front())),
-                      kWanted);
-  }
-  return {std::move(candidates), signals};
+  const auto ties = next_run::ties_of(verdict, signals);
+  const auto tied = std::ranges::find_if_not(ties, &next_run::Tie::broken);
+  if (tied != ties.end()) return {tied->left, signals};
+  throw ConfigError("REC",
+                    ties.empty() ? fmt::format("a verdict without a tie ({})", verdict.verdict())
+                                 : ties.front().in_words(),
+                    "a recording that two causes explain equally well");
 }
 
 void write_all(const Arguments& arguments, const Planned& planned, report::StagedFolder& folder) {
@@ -157,7 +150,7 @@ void add_plan_run_command(CLI::App& cli, int& status) {
       "stillhand plan-run run1/session.mcap --seconds 30 --out next");
   diagnose::add_recordings(*verb, arguments->recordings, arguments->read, arguments->options);
   verb->add_option("--seconds", arguments->seconds, "length of the run [s]")
-      ->check(settings::number_between(5.0, kLongest_s))
+      ->check(settings::number_between(next_run::kShortest_s, next_run::kLongest_s))
       ->capture_default_str();
   verb->add_option("--out", arguments->out, "folder for ride.csv, plan.json and plan.svg")
       ->required()

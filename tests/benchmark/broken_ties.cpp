@@ -15,6 +15,7 @@
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 #include "services/core/next_run/design.hpp"
+#include "services/core/next_run/tie.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
 #include "tests/benchmark/tied_subject.hpp"
 #include "tests/planted/series.hpp"
@@ -107,27 +108,27 @@ int run(const Options& options) {
     const auto verdict = diagnosis::diagnose(subject.measured, asked);
     const auto working = diagnosis::working_set(subject.measured, asked.inputs);
     const diagnosis::Signals signals(working, asked.inputs, asked.output);
-    auto candidates = next_run::tied_candidates(verdict, signals);
+    const auto closes = next_run::ties_of(verdict, signals);
+    const next_run::Tie tie = closes.empty() ? next_run::Tie{} : closes.front();
     std::set<std::string> kinds;
-    for (const auto& each : candidates) kinds.insert(each.cause().kind);
+    for (const auto& each : tie.close) kinds.insert(each.cause().kind);
     if (!kinds.contains(kind) || kinds.size() < 2) {
       std::fprintf(stderr, "%zu %s: %s;", i, kind.c_str(), verdict.verdict().c_str());
       for (const auto& each : verdict.effects)
         std::fprintf(stderr, " %s", each.effect.kind.c_str());
-      std::fprintf(stderr, "; %zu candidates\n", candidates.size());
+      std::fprintf(stderr, "; %zu candidates\n", tie.close.size());
       continue;
     }
-    candidates = next_run::Contest(std::move(candidates), signals).still_tied();
     // The planted kind and another one must be left; a set of kinds counts once.
     std::set<std::string> left;
-    for (const auto& each : candidates) left.insert(each.cause().kind);
+    for (const auto& each : tie.left) left.insert(each.cause().kind);
     std::fprintf(stderr, "%zu %s: of", i, kind.c_str());
     for (const std::string& each : kinds) std::fprintf(stderr, " %s", each.c_str());
     std::fprintf(stderr, " left");
     for (const std::string& each : left) std::fprintf(stderr, " %s", each.c_str());
     std::fprintf(stderr, "%s\n", left.contains(kind) ? "" : ", not the planted one");
     if (!left.contains(kind) || left.size() < 2 || !seen.insert(left).second) continue;
-    const next_run::Contest contest(std::move(candidates), signals);
+    const next_run::Contest contest(tie.left, signals);
     ++ties;
     const auto best =
         next_run::best_plan(contest, working, bounds_of(options.seconds), benchmark::on_all_cores);

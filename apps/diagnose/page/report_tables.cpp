@@ -73,7 +73,7 @@ Cell outcome_of(const Step& step, std::size_t i) {
   const bool tied =
       std::isfinite(trial.rmse) && step.chosen < step.tried.size() &&
       diagnosis::ties_with(trial, step.tried[step.chosen], step.before.rmse(), step.options);
-  return tied ? Cell("as good (tie)", Emphasis::kStrong) : Cell("rejected", Emphasis::kFaint);
+  return tied ? Cell("close", Emphasis::kStrong) : Cell("rejected", Emphasis::kFaint);
 }
 
 void add_trial(Table& table, const Step& step, std::size_t i) {
@@ -215,7 +215,7 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
         (found.search.whitened ? ", behind the filter that makes the noise white" : "") +
         ". Numbers: the fitted ones of the whole model.";
     if (!addition.ties.empty()) {
-      caption += " As good as the added one: " + spaced(listed(addition.ties)) + ".";
+      caption += " Close to the added one, for the search: " + spaced(listed(addition.ties)) + ".";
     }
     tables.push_back(tried_table(
         found, {addition.current, addition.tried, addition.chosen, found.options.search}, caption));

@@ -182,7 +182,8 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            (names.size() == 1 ? "as much" : "as the smallest of them does") +
            " with a probability of " + p_value(largest_p) +
            ", the choice among the candidates not counted." +
-           (tied ? " Other kinds explain the data as well: see \"ties\" in the table of effects."
+           (tied ? " Other kinds are tied with them on this recording: see \"ties\" in the table "
+                   "of effects."
                  : "");
   }
   const std::string left = shown(diagnosis.baseline_error.rmse, diagnosis.output_unit) +

@@ -152,18 +152,13 @@ diagnosis::Measurement read_session(const std::string& path, const ReadOptions& 
   if (options.lateness) add_lateness(path, session.rows);
   diagnosis::Measurement out = screened(std::move(session.rows), options, session.notes);
   if (!session.moves.empty()) {
-    out.notes.push_back(
-        fmt::format("In trial {} the stick moves: f is the force of stick and motor at the hand.",
-                    session.moves));
+    const std::string says = fmt::format(
+        "f: in trial {} the stick moves, so f is the force of stick and motor at the "
+        "hand, not that of a body on a held stick; the pegged trial has it",
+        session.moves);
+    out.notes.push_back(says);
     out.screening.push_back(
-        {"f",
-         "stick_moves",
-         {out.time_s().front()},
-         1.0,
-         "f: in trial " + session.moves +
-             " the stick moves, so f is the force of stick and motor at the "
-             "hand, not that of a body on a held stick; the pegged trial has it",
-         !options.lateness});
+        {"f", "stick_moves", {out.time_s().front()}, 1.0, says, !options.lateness});
   }
   return out;
 }

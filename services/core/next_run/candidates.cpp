@@ -102,29 +102,26 @@ void add_way(const Candidate& one, const Candidate& other, const diagnosis::Sign
 
 }  // namespace
 
-std::vector<Candidate> tied_candidates(const diagnosis::Diagnosis& diagnosis,
-                                       const diagnosis::Signals& signals) {
-  for (std::size_t e = 0; e < diagnosis.search.additions.size(); ++e) {
-    const Addition& addition = diagnosis.search.additions[e];
-    const Trial& chosen = addition.tried[addition.chosen];
-    std::vector<const Trial*> taken{&chosen};
-    for (const Trial& trial : addition.tried) {  // best first
-      const auto is_taken = [&](const Trial* each) {
-        return same_cause(each->model.effects.back(), trial.model.effects.back());
-      };
-      if (taken.size() < kMostCandidates && is_rival(trial, chosen, diagnosis.effects[e].ties) &&
-          std::ranges::none_of(taken, is_taken)) {
-        taken.push_back(&trial);
-      }
+std::vector<Candidate> candidates_of(const diagnosis::Diagnosis& diagnosis, std::size_t effect,
+                                     const diagnosis::Signals& signals) {
+  const Addition& addition = diagnosis.search.additions[effect];
+  const Trial& chosen = addition.tried[addition.chosen];
+  std::vector<const Trial*> taken{&chosen};
+  for (const Trial& trial : addition.tried) {  // best first
+    const auto is_taken = [&](const Trial* each) {
+      return same_cause(each->model.effects.back(), trial.model.effects.back());
+    };
+    if (taken.size() < kMostCandidates && is_rival(trial, chosen, diagnosis.effects[effect].ties) &&
+        std::ranges::none_of(taken, is_taken)) {
+      taken.push_back(&trial);
     }
-    if (taken.size() < 2) continue;
-    std::vector<Candidate> candidates;
-    for (const Trial* trial : taken) {
-      candidates.push_back(completed(*trial, diagnosis.model, e, signals));
-    }
-    return candidates;
   }
-  return {};
+  if (taken.size() < 2) return {};
+  std::vector<Candidate> candidates;
+  for (const Trial* trial : taken) {
+    candidates.push_back(completed(*trial, diagnosis.model, effect, signals));
+  }
+  return candidates;
 }
 
 std::vector<std::string> other_ways(const Candidate& one, const Candidate& other,

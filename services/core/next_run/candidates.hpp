@@ -20,11 +20,11 @@ struct Candidate {
 /// At most so many, the verdict's included: the pairs grow with the square.
 inline constexpr std::size_t kMostCandidates = 5;
 
-/// Candidates of the strongest effect that has a tie, the verdict's own first, Eq. NR-1: one for
-/// each kind and channel.  Fewer than two: nothing is tied.  Pure.
+/// Candidates of one effect of the verdict, the verdict's own first, Eq. NR-1: one for each kind
+/// and channel.  Fewer than two: no other cause is close.  Pure.
 /// @param signals  of the recording, as it was diagnosed
-std::vector<Candidate> tied_candidates(const diagnosis::Diagnosis& diagnosis,
-                                       const diagnosis::Signals& signals);
+std::vector<Candidate> candidates_of(const diagnosis::Diagnosis& diagnosis, std::size_t effect,
+                                     const diagnosis::Signals& signals);
 
 /// What else than the platform's motion separates two candidates, Eq. NR-8, a sentence each;
 /// empty: they read the same channels.

@@ -200,10 +200,9 @@ TEST(DiagnosisJsonTest, TheTableHasALineForEveryError) {
   diagnosis::Diagnosis diagnosis =
       diagnosis_with({{"coulomb_friction", "sign", {"omega"}, {}, {1.0}}});
   diagnosis.effects[0].channel = "omega";
-  diagnosis.effects[0].ties = {"hysteresis"};
   EXPECT_THAT(diagnosis_table(diagnosis),
               AllOf(HasSubstr("effect 1"), HasSubstr("coulomb_friction (omega): 2 -> 1 N"),
-                    HasSubstr("it is there"), HasSubstr("hysteresis")));
+                    HasSubstr("it is there")));
 }
 
 }  // namespace

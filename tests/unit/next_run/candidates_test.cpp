@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/next_run/candidates.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/core/next_run/tie.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
 
 namespace stillhand::next_run {
@@ -35,12 +34,26 @@ TEST(CandidatesTest, TwoChannelsThatAreNearlyTheSameAreTied) {
   options.inputs = {"u"};
   options.output = "y";
   const diagnosis::Signals signals(recording, {"u"}, "y");
-  const auto sut = tied_candidates(diagnosis::diagnose(recording, options), signals);
+  const auto sut = ties_of(diagnosis::diagnose(recording, options), signals);
+  ASSERT_FALSE(sut.empty());
   std::vector<std::string> channels;
-  for (const Candidate& each : sut) {
+  for (const Candidate& each : sut.front().close) {
     if (each.cause().kind == "coupled_input") channels.push_back(each.cause().channels.front());
   }
   EXPECT_THAT(channels, testing::IsSupersetOf({"x", "z"}));
+}
+
+TEST(CandidatesTest, ATieHasOneWordingWhetherItIsBrokenOrNot) {
+  Tie tie{0, {made::candidate("x"), made::candidate("z")}};
+  tie.left = tie.close;
+  EXPECT_FALSE(tie.broken());
+  EXPECT_EQ(
+      tie.in_words(),
+      "tied on this recording: coupled_input (of x, static) and coupled_input (of z, static)");
+  tie.left.pop_back();
+  EXPECT_TRUE(tie.broken());
+  EXPECT_EQ(tie.in_words(),
+            "of 2 causes that are close the whole recording leaves coupled_input (of x, static)");
 }
 
 TEST(CandidatesTest, AChannelThatOneReadsTellsThemApart) {

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/files/digest/content_digest.hpp"
+#include "services/files/digest/digest.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
 
@@ -17,14 +19,26 @@ namespace {
 
 class PlanFileTest : public testing::Test {
  protected:
-  PlanFileTest() : path_(std::filesystem::path(testing::TempDir()) / "plan_file_test.json") {
+  PlanFileTest()
+      : path_(std::filesystem::path(testing::TempDir()) / "plan_file_test" / "plan.json") {
+    std::filesystem::create_directories(path_.parent_path());
+    std::ofstream(path_.parent_path() / kRideName) << kRide;
     json_["seconds"] = 30.0;
+    json_["ride"] = kRideName;
+    json_["ride_sha256"] = rig::sha256(kRide);
     json_["candidates"] = {json_of(made::candidate("x")), json_of(made::candidate("z"))};
+    json_["provenance"]["version"] = "1.2.3";
+    json_["provenance"]["content_sha256"] = rig::content_digest(json_);
   }
   PlanFile read() {
     std::ofstream(path_) << json_.dump();
-    return read_plan(path_);
+    return read_plan(path_, "1.2.3");
   }
+  std::string refused() {
+    return support::refusal([&] { read(); });
+  }
+
+  static constexpr const char* kRide = "t [s],a_y [m/s^2]\n0,1\n";
 
   std::filesystem::path path_;
   nlohmann::ordered_json json_;
@@ -56,6 +70,37 @@ TEST_F(PlanFileTest, AnotherFileIsNoPlan) {
               testing::HasSubstr("want a plan, as `stillhand plan-run` writes it"));
   json_ = nlohmann::ordered_json::array();
   EXPECT_THAT(support::refusal([&] { read(); }), testing::HasSubstr("want a plan"));
+}
+
+TEST_F(PlanFileTest, WhatAHandChangedIsRefusedWithItsPlace) {
+  const nlohmann::ordered_json whole = json_;
+  const auto with = [&](const char* pointer, const nlohmann::ordered_json& value) {
+    json_ = whole;
+    json_[nlohmann::ordered_json::json_pointer(pointer)] = value;
+    return refused();
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(with("/seconds", 900.0), HasSubstr("seconds"));
+  EXPECT_THAT(with("/ride", "other.csv"), HasSubstr("ride"));
+  EXPECT_THAT(with("/candidates/1/kind", "tone"), HasSubstr("candidates[1].kind"));
+  EXPECT_THAT(with("/candidates/1/channel", "x"), HasSubstr("candidates[1].channel"));
+  EXPECT_THAT(with("/candidates/0/form", "lag"), HasSubstr("candidates[0].form"));
+  EXPECT_THAT(with("/candidates/0/heldout_rmse", -1.0), HasSubstr("candidates[0].heldout_rmse"));
+  EXPECT_THAT(with("/candidates/1", whole["candidates"][0]), HasSubstr("another cause"));
+  // What no field shows, the digest does.
+  EXPECT_THAT(with("/candidates/0/heldout_rmse", 0.5), HasSubstr("changed after it was written"));
+}
+
+TEST_F(PlanFileTest, AnotherRideIsRefused) {
+  std::ofstream(path_.parent_path() / kRideName) << "t [s],a_y [m/s^2]\n0,2\n";
+  EXPECT_THAT(refused(), testing::HasSubstr("not the ride of this plan"));
+  std::filesystem::remove(path_.parent_path() / kRideName);
+  EXPECT_THAT(refused(), testing::HasSubstr("the ride next to its plan"));
+}
+
+TEST_F(PlanFileTest, APlanOfAnotherVersionIsRefused) {
+  json_["provenance"]["version"] = "1.2.4";
+  EXPECT_THAT(refused(), testing::HasSubstr("plan the run again"));
 }
 
 TEST_F(PlanFileTest, OneCandidateIsNoTie) {
