@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "apps/diagnose/enough.hpp"
 #include "services/files/settings/check_number.hpp"
 
 namespace stillhand::diagnose {
@@ -35,6 +36,7 @@ std::vector<diagnosis::Measurement> read_recordings(const std::vector<std::strin
     parts.push_back(measurement::read_measurement(path, read));
     measurement::require_channels(parts.back(), names, read);
   }
+  check_enough(parts, options);
   return parts;
 }
 

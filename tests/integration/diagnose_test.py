@@ -136,7 +136,7 @@ class DiagnoseTest(FolderCase):
         noise = random.Random(3)
         inputs = {
             "unrelated": lambda n: noise.gauss(0.0, 1.0),
-            "far_too_slow": lambda n: 1e-3 * math.sin(2.0 * math.pi * n / 10000),
+            "far_too_slow": lambda n: 1e-3 * math.sin(2.0 * math.pi * n / 2500),
             "every_other_sample": lambda n: (-1.0) ** n,
         }
         for name, of_sample in inputs.items():
