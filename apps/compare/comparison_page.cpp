@@ -36,7 +36,8 @@ report::Panel restored_panel(const Comparison& all, std::size_t m) {
   panel.title = kMetrics[m].judged;
   panel.y.label = "restored share [%]";
   panel.x.low = 0.5;
-  panel.x.high = static_cast<double>(all.options.size()) + 0.5;
+  // The names of the two lines stand in the last sixth, where they hide no option.
+  panel.x.high = 1.2 * static_cast<double>(all.options.size()) + 0.5;
   panel.legend = report::Legend::kNone;
   for (std::size_t i = 0; i < all.options.size(); ++i) {
     const double at = static_cast<double>(i) + 1.0;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
@@ -24,15 +27,24 @@ void add_points(Panel& panel, const char* label, const diagnosis::LineGroup& gro
                           .point_size = 0.7});
 }
 
-void add_noise(Panel& panel, const diagnosis::LineGroup& group, bool in_legend) {
-  if (group.empty()) return;
-  panel.series.push_back({.label = "noise at the lines",
-                          .kind = Kind::kDottedLine,
-                          .colour = Colour::kNeutral,
-                          .x = group.frequency_hz,
-                          .y = group.noise,
-                          .line_width_px = 1.4,
-                          .show_in_legend = in_legend});
+// Of all groups as one line, from the lowest frequency to the highest.
+void add_noise(Panel& panel, const std::vector<const diagnosis::LineGroup*>& groups) {
+  std::map<double, double> noise;
+  for (const diagnosis::LineGroup* group : groups) {
+    for (std::size_t i = 0; i < group->frequency_hz.size(); ++i) {
+      noise[group->frequency_hz[i]] = group->noise[i];
+    }
+  }
+  if (noise.empty()) return;
+  Series series{.label = "noise at the lines",
+                .kind = Kind::kDottedLine,
+                .colour = Colour::kNeutral,
+                .line_width_px = 1.4};
+  for (const auto& [frequency_hz, level] : noise) {
+    series.x.push_back(frequency_hz);
+    series.y.push_back(level);
+  }
+  panel.series.push_back(std::move(series));
 }
 
 Panel panel_of(const diagnosis::DetectionLines& lines, const std::string& title,
@@ -41,9 +53,7 @@ Panel panel_of(const diagnosis::DetectionLines& lines, const std::string& title,
   panel.title = title;
   panel.x = {.label = "frequency [Hz]", .scale = Scale::kLogarithmic};
   panel.y = {.label = axis_label("RMS of a line", unit), .scale = Scale::kLogarithmic};
-  const bool mixed = !lines.odd_or_even.empty();
-  add_noise(panel, mixed ? lines.odd_or_even : lines.odd, mixed || lines.even.empty());
-  add_noise(panel, lines.even, !mixed);
+  add_noise(panel, {&lines.odd, &lines.even, &lines.odd_or_even});
   panel.series.push_back({.label = "output, excited",
                           .kind = Kind::kPoints,
                           .colour = Colour::kNeutral,
