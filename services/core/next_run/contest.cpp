@@ -69,7 +69,9 @@ MatrixXd without(const MatrixXd& information, const std::vector<Index>& own) {
 // Sums over blocks of a stretch each.
 std::vector<double> block_sums(const VectorXd& values, const Signals& signals) {
   std::vector<double> sums;
-  const auto length = static_cast<std::size_t>(kBlock_s * signals.rate_hz());
+  constexpr std::size_t kFewestSamples = 5;  // two seconds of a slow record have none, Eq. DG-16
+  const auto length =
+      std::max(kFewestSamples, static_cast<std::size_t>(kBlock_s * signals.rate_hz()));
   for (const diagnosis::Stretch& stretch : signals.stretches()) {
     for (std::size_t n = stretch.first; n < stretch.end; n += length) {
       const std::size_t count = std::min(length, stretch.end - n);

@@ -21,6 +21,16 @@ TEST(ContestTest, TheSameColumnIsATie) {
   EXPECT_EQ(sut.still_tied().size(), 2U);
 }
 
+// Two seconds of a tank's record, a sample each four, hold none.
+TEST(ContestTest, ASlowRecordingHasBlocksToo) {
+  diagnosis::Measurement slow = made::measured(3300, 4, 1);
+  slow.rate_hz = 0.25;
+  std::vector<Candidate> candidates{made::candidate("x"), made::candidate("z")};
+  for (Candidate& each : candidates) each.model.rate_hz = slow.rate_hz;
+  const Contest sut(candidates, diagnosis::Signals(slow, {"u"}, "y"));
+  EXPECT_EQ(sut.still_tied().size(), 2U);
+}
+
 // Eq. NR-3 in closed form.  The recording has 3200 samples behind its first second, the run 2000.
 // d of the rival costs c^2 2000 for x, d^2 2000 for z, and (d - c)^2 3200 against the recording.
 TEST(ContestTest, TheRivalIsFittedToBothRuns) {
