@@ -104,7 +104,7 @@ std::optional<BrokenTie> tie_of(const std::optional<next_run::PlanFile>& plan,
 // The tied kinds of each effect are those that the whole recording leaves, as `plan-run` judges
 // them; the search alone is more lenient (DG-17).
 std::vector<next_run::Tie> judge_ties(const diagnosis::Measurement& measurement,
-                                      diagnosis::Diagnosis& result) {
+                                      diagnosis::Diagnosis& result) try {
   if (result.no_model) return {};
   const std::vector<std::string>& inputs = result.options.inputs;
   const diagnosis::Signals signals(diagnosis::working_set(measurement, inputs), inputs,
@@ -119,6 +119,9 @@ std::vector<next_run::Tie> judge_ties(const diagnosis::Measurement& measurement,
     effect.evidence += "; " + tie.in_words();
   }
   return ties;
+} catch (const ConfigError& error) {  // a rival whose run is not finite takes no verdict away
+  result.notes.push_back(std::string("what ties is the search's word alone: ") + error.what());
+  return {};
 }
 
 // Of one input; a mass is no sum of several.
