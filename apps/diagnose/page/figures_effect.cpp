@@ -99,7 +99,11 @@ std::vector<report::Figure> diagnosis_figures(const Evidence& evidence) {
   const std::size_t effects = std::min(evidence.found.effects.size(), kMostEffectFigures);
   for (std::size_t e = 0; e < effects; ++e) figures.push_back(figure_effect(evidence, e));
   figures.push_back(figure_over_time(evidence));
-  figures.push_back(figure_autocorrelation(evidence));
+  // The second that is computed has hardly a lag in a slow record: no picture of a correlation.
+  constexpr std::size_t kFewestLags = 5;
+  if (evidence.found.before.whiteness.autocorrelation.size() > kFewestLags) {
+    figures.push_back(figure_autocorrelation(evidence));
+  }
   if (evidence.found.before.coherence.independent_averages > 0.0) {
     figures.push_back(figure_coherence(evidence));
   }
