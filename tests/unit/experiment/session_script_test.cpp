@@ -204,11 +204,13 @@ class DiagnosedTest : public SessionScriptTest {
     make(3);
     FakeTrials trials;
     EXPECT_TRUE(run(trials));
-    // Notice, settling (a tick) and fade first, whatever the condition is, then the rest of the rest.
+    // Notice, settling (a tick) and fade first, whatever the condition is, then the rest of the
+    // rest.
     constexpr double kSettles_s = 0.250 + 0.001 + 0.250;
     constexpr double kLeft_s = 10.0 - kSettles_s;
-    EXPECT_THAT(trials.rested, testing::Pointwise(testing::DoubleNear(1e-9),
-                                                  {kSettles_s, kSettles_s, kLeft_s, kSettles_s, kLeft_s}));
+    EXPECT_THAT(trials.rested,
+                testing::Pointwise(testing::DoubleNear(1e-9),
+                                   {kSettles_s, kSettles_s, kLeft_s, kSettles_s, kLeft_s}));
     std::vector<std::pair<double, bool>> out;
     for (const auto& model : trials.used) {
       const cancellation::InputPath& input = model.inputs.at(0);
