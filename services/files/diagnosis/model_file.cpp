@@ -149,8 +149,7 @@ Effect effect_of(const Entry& entry, std::size_t order) {
     }
   }
   if ((*known)->stage(effect) == Stage::kFeedback) {
-    const std::size_t count = effect.coefficients.size();
-    if (count != loop_coefficients(true, order) && count != loop_coefficients(false, order)) {
+    if (!fits_loop(effect.coefficients.size(), (*known)->feedback(effect), order)) {
       entry.at("coefficients").refuse("as many as the body's order asks for");
     }
   }

@@ -31,12 +31,25 @@ TEST(LoopPathTest, CoefficientsAreTurnedIntoPowersOfTheDelay) {
   EXPECT_THAT(inside.m, ElementsAre(0.0, 0.75, -0.25)) << "no term of its own sample";
 }
 
-TEST(LoopPathTest, TheNumberOfCoefficientsDistinguishesTheTwoPlaces) {
-  for (std::size_t order = 1; order <= 12; ++order) {
-    EXPECT_NE(loop_coefficients(true, order), loop_coefficients(false, order));
+TEST(LoopPathTest, TheNumberOfCoefficientsIsThatOfThePlace) {
+  const Nonlinearity spring;
+  const Nonlinearity stop{.stop = 1.0};
+  for (const std::size_t count : {0u, 3u, 4u, 5u, 14u}) {
+    EXPECT_EQ(fits_loop(count, spring, 4), count == 4 || count == 14) << count;
+    EXPECT_EQ(fits_loop(count, stop, 4), count == 0) << count;
   }
-  EXPECT_EQ(loop_coefficients(true, 4), 4u);
-  EXPECT_EQ(loop_coefficients(false, 4), 14u);
+  EXPECT_FALSE(fits_loop(0, stop, 0)) << "a static body has nothing to forget";
+}
+
+// y = z - phi(z) into A y = B u: A z = B u + (A - 1) phi(z).
+TEST(LoopPathTest, AStopActsWithinTheSample) {
+  Effect effect{"output_saturation", "stop above", {}, {constant("limit", "N", 0.5)}, {}};
+  const LoopPath sut = loop_path(effect, 2);
+  EXPECT_TRUE(sut.of_output());
+  EXPECT_THAT(sut.e, ElementsAre(-1.0, 0.0, 0.0));
+  EXPECT_THAT(sut.to_argument({1.0, -1.5, 0.7}), ElementsAre(0.0, -1.5, 0.7));
+  effect.share = 0.25;
+  EXPECT_THAT(loop_path(effect, 2).e, ElementsAre(-0.25, 0.0, 0.0));
 }
 
 TEST(EffectPartsTest, AQuantileIsTheValueBelowWhichAShareLies) {

@@ -75,6 +75,8 @@ inline std::vector<Effect> effects_inside_the_body() {
        {-0.03, 0.02}},
       {"hysteresis", "smooth inside the body", {}, {}, inside},
       {"dead_zone", "play of the output", {}, {{"threshold", "N", 0.4, 0.01, 20.0}}, {0.03, -0.01}},
+      {"output_saturation", "stop above", {}, {constant("limit", "N", 0.4)}, {}},
+      {"output_saturation", "stop below", {}, {constant("limit", "N", -0.3)}, {}},
   };
 }
 
@@ -130,6 +132,8 @@ inline std::vector<Effect> effects_behind_the_body() {
       {"dead_zone", "at the output", {}, {{"half_width", "N", 0.1, 0.0, 3.0}}, {}},
       {"output_saturation", "hard", {}, {{"limit", "N", 0.3, 0.01, 9.0}}, {}},
       {"output_saturation", "soft", {}, {{"limit", "N", 0.5, 0.01, 9.0}}, {}},
+      {"output_saturation", "clip above", {}, {constant("limit", "N", 0.4)}, {}},
+      {"output_saturation", "clip below", {}, {constant("limit", "N", -0.3)}, {}},
       {"output_saturation",
        "hard, two limits",
        {},

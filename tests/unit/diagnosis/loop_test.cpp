@@ -58,5 +58,48 @@ TEST(LoopTest, OneThatRunsAwayLeavesTheOthersAlone) {
   expect_each_as_alone(models);
 }
 
+// y(n) = offset + min(z(n), L - offset), written out: what would have gone beyond is not there
+// later.
+TEST(LoopTest, AStopHoldsTheOutputAndForgetsWhatWouldGoBeyond) {
+  constexpr double kLimit = 0.9;
+  Model sut = made::model_of(
+      made::two_pole_body(),
+      {{"output_saturation", "stop above", {}, {constant("limit", "N", kLimit)}, {}}});
+  sut.body.offset = 0.5;
+  const auto u = made::ride(kCount, 1);
+  const Signals signals(made::measurement_of({{"u", "V", u}, {"y", "N", made::white(kCount, 2)}}),
+                        {"u"}, "y");
+  const FreeRun run = free_run(sut, signals);
+  const auto& b = sut.body.numerators.front();
+  const auto& a = sut.body.denominator;
+  std::vector<double> want(kCount, 0.0);
+  std::size_t stopped = 0;
+  for (std::size_t n = 0; n < kCount; ++n) {
+    for (std::size_t i = 0; i < 3 && i <= n; ++i) want[n] += b[i] * u[n - i];
+    for (std::size_t j = 1; j < 3 && j <= n; ++j) want[n] -= a[j] * want[n - j];
+    stopped += want[n] > kLimit - 0.5 ? 1u : 0u;
+    want[n] = std::min(want[n], kLimit - 0.5);
+  }
+  EXPECT_GT(stopped, kCount / 10);
+  ASSERT_TRUE(run.finite);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    // Some roundings of 1e-16; the ride's first second is so small that it starts from rest.
+    ASSERT_NEAR(run.prediction[n], 0.5 + want[n], 1e-12) << n;
+  }
+}
+
+// A level of the input that would hold the output beyond: before the stretch it rests at the stop.
+TEST(LoopTest, AStretchMayBeginAtTheStop) {
+  const Body body{{{0.0, 0.1}}, {1.0, -0.9}};
+  const Signals signals(made::measurement_of({{"u", "V", std::vector<double>(kCount, 2.0)},
+                                              {"y", "N", made::white(kCount, 2)}}),
+                        {"u"}, "y");
+  const FreeRun run = free_run(
+      made::model_of(body,
+                     {{"output_saturation", "stop above", {}, {constant("limit", "N", 1.5)}, {}}}),
+      signals);
+  for (std::size_t n = 0; n < kCount; ++n) ASSERT_NEAR(run.prediction[n], 1.5, 1e-9) << n;
+}
+
 }  // namespace
 }  // namespace stillhand::diagnosis

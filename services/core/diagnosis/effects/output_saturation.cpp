@@ -12,20 +12,44 @@ namespace {
 bool soft(const Effect& effect) { return effect.form.starts_with("soft"); }
 bool two_limits(const Effect& effect) { return effect.form == "hard, two limits"; }
 
-double upper(const Effect& effect) { return effect.value(0); }
+// Of an output that rests at an end of its range.
+bool is_stop(const Effect& effect) { return effect.form.starts_with("stop"); }
+bool is_clip(const Effect& effect) { return effect.form.starts_with("clip"); }
+bool is_above(const Effect& effect) { return effect.form.ends_with("above"); }
+
+double beyond(double z, LoopMemory& /*memory*/) { return std::max(z, 0.0); }
+double short_of(double z, LoopMemory& /*memory*/) { return std::min(z, 0.0); }
+
+double upper(const Effect& effect) {
+  return is_clip(effect) && !is_above(effect) ? HUGE_VAL : effect.value(0);
+}
 double lower(const Effect& effect) {
+  if (is_clip(effect)) return is_above(effect) ? -HUGE_VAL : effect.value(0);
   return two_limits(effect) ? effect.value(1) : -effect.value(0);
 }
 
 /// An output that ends at a limit L, or at an upper and a lower one:
 ///
-///   clip(y, L)  or  L tanh(y / L)
+///   clip(y, L)  or  L tanh(y / L)  or  min(y, L)  or  max(y, L)
+///
+/// or a stop at L, above or below, of the body itself, which so forgets what would go beyond:
+///
+///   y_b(n) = min(z(n), L),  z(n) = sum b_i u(n-i) - sum a_j y_b(n-j)
 ///
 /// Source: METHOD Eq. DG-28; a static map behind a linear system: Schoukens and Ljung (2019).
 class OutputSaturation final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "output_saturation"; }
-  [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kOutputValue; }
+  [[nodiscard]] Stage stage(const Effect& effect) const override {
+    return is_stop(effect) ? Stage::kFeedback : Stage::kOutputValue;
+  }
+  [[nodiscard]] bool shows_in_rows(const Effect& effect) const override {
+    return is_stop(effect) || is_clip(effect);
+  }
+  [[nodiscard]] Nonlinearity feedback(const Effect& effect) const override {
+    if (!is_stop(effect) || effect.parameters.empty()) return EffectKind::feedback(effect);
+    return {is_above(effect) ? beyond : short_of, 1.0, effect.value(0)};
+  }
   [[nodiscard]] double mapped(const Effect& effect, double y) const override {
     if (!soft(effect)) return std::clamp(y, lower(effect), upper(effect));
     return upper(effect) * std::tanh(y / upper(effect));
@@ -35,7 +59,8 @@ class OutputSaturation final : public EffectKind {
     const double t = std::tanh(y / upper(effect));
     return 1.0 - t * t;
   }
-  [[nodiscard]] ControlRole body_role(const Effect& /*effect*/) const override {
+  [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
+    if (is_stop(effect)) return control::LeftOut{"the canceller has no stop inside the body"};
     return control::NotFelt{
         "the limit is the force sensor's and the hand does not feel it: the motor opposes the "
         "force "
@@ -44,6 +69,16 @@ class OutputSaturation final : public EffectKind {
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     const std::string& unit = effect.parameters[0].unit;
+    if (is_stop(effect)) {
+      return "the output rests at " + with_unit(effect.value(0), unit) +
+             " while the linear prediction moves on, and forgets what would have gone beyond: the "
+             "body itself ends there, not its sensor";
+    }
+    if (is_clip(effect)) {
+      return "the output rests at " + with_unit(effect.value(0), unit) +
+             " while the linear prediction goes beyond, and comes back as late as it does: a limit "
+             "behind the body";
+    }
     return "the output ends at " +
            (two_limits(effect)
                 ? with_unit(lower(effect), unit) + " and " + with_unit(upper(effect), unit)
@@ -118,6 +153,122 @@ Proposal fitted_from(const Effect& start, const Body& body, const Screening& scr
   return {model.effects.back(), 1.0 - std::pow(fitted.rmse / screening.rmse(), 2), model.body};
 }
 
+// Rows of equal values, within a stretch.
+struct Run {
+  std::size_t first = 0;
+  std::size_t end = 0;
+
+  [[nodiscard]] std::size_t rows() const { return end - first; }
+};
+
+// The values of a signal, equal but for rounding.
+class Levels {
+ public:
+  explicit Levels(const Signal& signal) : values_(signal.values) {
+    const auto [low, high] = std::ranges::minmax(values_);
+    rounding_ = kRounding * (high - low);
+  }
+
+  [[nodiscard]] bool equal(double one, double other) const {
+    return std::abs(one - other) <= rounding_;
+  }
+  [[nodiscard]] std::ptrdiff_t count(double level) const {
+    return std::ranges::count_if(values_, [&](double each) { return equal(each, level); });
+  }
+  [[nodiscard]] double next_to(double level) const {
+    double next = HUGE_VAL;
+    for (const double each : values_) {
+      if (!equal(each, level) && std::abs(each - level) < std::abs(next - level)) next = each;
+    }
+    return next;
+  }
+  [[nodiscard]] std::vector<Run> runs(const std::vector<Stretch>& stretches) const {
+    std::vector<Run> runs;
+    for (const Stretch& stretch : stretches) {
+      for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+        const bool goes_on = n > stretch.first && equal(values_[n], values_[n - 1]);
+        if (!goes_on) runs.push_back({n, n});
+        runs.back().end = n + 1;
+      }
+    }
+    return runs;
+  }
+
+ private:
+  static constexpr double kRounding = 1e-9;  // of the range
+
+  const std::vector<double>& values_;
+  double rounding_ = 0.0;
+};
+
+// That the model without a stop moves on where the output rests.
+bool moves_over(const Run& run, const Screening& screening) {
+  const auto at = screening.prediction().begin();
+  const auto [low, high] = std::minmax_element(at + static_cast<std::ptrdiff_t>(run.first),
+                                               at + static_cast<std::ptrdiff_t>(run.end));
+  return *high - *low > screening.rmse();
+}
+
+// Eq. DG-89: the output rests at this end of its range, and nowhere else for as long.
+bool rests_at(double end, const Screening& screening) {
+  constexpr std::size_t kFewestRows = 5;
+  constexpr std::size_t kLonger = 2;           // than a rest elsewhere
+  constexpr std::ptrdiff_t kMoreThanNext = 4;  // a sine of few digits has 1.3 times as many
+  const Signals& signals = screening.signals();
+  const Levels levels(signals.output());
+  Run longest;
+  std::size_t elsewhere = 0;
+  for (const Run& run : levels.runs(signals.stretches())) {
+    if (!levels.equal(signals.output().values[run.first], end)) {
+      elsewhere = std::max(elsewhere, run.rows());
+    } else if (run.rows() > longest.rows()) {
+      longest = run;
+    }
+  }
+  return longest.rows() >= std::max(kFewestRows, kLonger * elsewhere) &&
+         levels.count(end) >= kMoreThanNext * levels.count(levels.next_to(end)) &&
+         moves_over(longest, screening);
+}
+
+// To start a stop from: the model's own body, and those of a level and of a mass.  Poles that the
+// stop's state does not have would remember what it forgets.
+std::vector<Body> bodies_to_stop(const Screening& screening) {
+  constexpr int kMostStates = 2;
+  const Model& model = screening.model();
+  std::vector<Body> bodies{model.body};
+  if (!model.effects.empty()) return bodies;
+  for (int order = 1; order <= kMostStates; ++order) {
+    if (order == static_cast<int>(model.body.order())) continue;
+    bodies.push_back(new_body(screening, measured_inputs(screening),
+                              screening.signals().output().values, order));
+  }
+  return bodies;
+}
+
+// A stop and a clip at each end of its range where the output rests.  The data hardly distinguish a
+// stop from another nonlinearity inside the body.
+std::vector<Proposal> where_it_rests(const Screening& screening) {
+  const Model& model = screening.model();
+  const bool has_loop = std::ranges::any_of(model.effects, [](const Effect& each) {
+    return effect_kind(each.kind).stage(each) == Stage::kFeedback;
+  });
+  const bool may_stop = !has_loop && model.body.order() > 0;
+  const Signal& output = screening.signals().output();
+  const auto [low, high] = std::ranges::minmax(output.values);
+  std::vector<Proposal> all;
+  const auto add = [&](const std::string& form, double end, const Body& body) {
+    const Effect effect{"output_saturation", form, {}, {constant("limit", output.unit, end)}, {}};
+    all.push_back(fitted_from(effect, body, screening));
+  };
+  for (const auto& [side, end] : {std::pair(" above", high), std::pair(" below", low)}) {
+    if (!rests_at(end, screening)) continue;
+    add(std::string("clip") + side, end, model.body);
+    if (!may_stop) continue;
+    for (const Body& body : bodies_to_stop(screening)) add(std::string("stop") + side, end, body);
+  }
+  return all;
+}
+
 std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) const {
   for (const Effect& effect : screening.model().effects) {
     if (effect.kind == name()) return {};
@@ -150,7 +301,9 @@ std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) con
   }
   std::vector<Proposal> all = best_of(std::move(hard), 2);
   for (Proposal& each : softened) all.push_back(std::move(each));
-  return best_of(std::move(all), 3);
+  all = best_of(std::move(all), 3);
+  for (Proposal& each : where_it_rests(screening)) all.push_back(std::move(each));
+  return all;
 }
 
 }  // namespace

@@ -26,6 +26,9 @@ using LoopMemory = signal::HysteresisMemory;
 struct Nonlinearity {
   double (*phi)(double z, LoopMemory& memory) = nullptr;
   double threshold = 1.0;
+  /// [unit of the output] of a stop, Eq. DG-28: z, the output before it, counts from here, and phi
+  /// is taken from the output of the same sample.
+  std::optional<double> stop = {};
 };
 
 /// An effect with values to start its fit from.
@@ -94,6 +97,9 @@ class EffectKind {
   /// kTerm: poles that it filters its columns with, as a denominator 1, m_1, .. whose free response
   /// at a stretch's start is fitted as the body's is, Eq. DG-10 and DG-82; empty: none.
   [[nodiscard]] virtual std::vector<double> own_poles(const Effect& effect, double rate_hz) const;
+  /// True where the output's rows themselves show that it acts, Eq. DG-89: whether the blocks are
+  /// many enough to say so is not asked.
+  [[nodiscard]] virtual bool shows_in_rows(const Effect& /*effect*/) const { return false; }
   /// kWeight: sets the weight of samples that the model does not claim to explain to 0.
   virtual void weigh(const Effect& effect, const Signals& signals, std::span<double> weight) const;
 };

@@ -25,6 +25,13 @@ Loop loop_of(const Model& model) {
   return loop;
 }
 
+// Which acts from a level of the output: the offset moves the body against it.
+bool has_stop(const Model& model) {
+  return std::ranges::any_of(feedback_of(model), [](const Effect* effect) {
+    return effect_kind(effect->kind).feedback(*effect).stop.has_value();
+  });
+}
+
 // A number whose column comes from a forward difference.
 struct ByDifference {
   Eigen::Index number = 0;
@@ -34,12 +41,13 @@ struct ByDifference {
 // Those of nonlinear parameters, and with feedback those that its argument depends on.
 std::vector<ByDifference> by_differences(const Model& model, Loop loop) {
   std::vector<ByDifference> which;
-  Eigen::Index next = 1;
+  Eigen::Index next = 0;
   const auto append = [&](std::size_t count, bool needed, std::optional<std::size_t> owner) {
     for (std::size_t i = 0; i < count; ++i, ++next) {
       if (needed) which.push_back({next, owner});
     }
   };
+  append(1, loop == Loop::kOfOutput && has_stop(model), {});
   for (const auto& numerator : model.body.numerators) {
     append(numerator.size(), loop == Loop::kOfOutput, {});
   }

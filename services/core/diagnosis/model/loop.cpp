@@ -31,10 +31,11 @@ struct Running {
   LoopPath path;
   double low = -HUGE_VAL;  // phi is held beyond
   double high = HUGE_VAL;
+  double stop = 0.0;  // of y_b
   LoopMemory memory{};
 
   double phi_of(double at) {
-    return nonlinearity.phi(std::clamp(at, low, high) / nonlinearity.threshold, memory);
+    return nonlinearity.phi((std::clamp(at, low, high) - stop) / nonlinearity.threshold, memory);
   }
 };
 
@@ -183,9 +184,8 @@ Rest rest_of(const Body& body, std::vector<Running>& loops, const std::vector<do
       const LoopPath& path = loops[i].path;
       const double e = sum_of(path.e) / a;
       rest.output -= e * rest.phi[i];
-      rest.z[i] = path.of_output()
-                      ? equilibrium(loops[i], rest.output, e)
-                      : equilibrium(loops[i], sum_of(path.n) * levels[0] / a, sum_of(path.m) / a);
+      const double without = path.of_output() ? rest.output : sum_of(path.n) * levels[0] / a;
+      rest.z[i] = equilibrium(loops[i], without, sum_of(path.to_argument(body.denominator)) / a);
       rest.phi[i] = phi_afresh(loops[i], rest.z[i]);
       rest.output += e * rest.phi[i];
     }
@@ -195,20 +195,33 @@ Rest rest_of(const Body& body, std::vector<Running>& loops, const std::vector<do
 
 }  // namespace
 
-std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept {
-  return of_output ? order : 3 * order + 2;
+bool fits_loop(std::size_t coefficients, const Nonlinearity& nonlinearity, std::size_t order) {
+  if (nonlinearity.stop) return coefficients == 0 && order > 0;
+  return coefficients == order || coefficients == 3 * order + 2;
+}
+
+std::vector<double> LoopPath::to_argument(const std::vector<double>& denominator) const {
+  if (!of_output()) return m;
+  std::vector<double> path = e;
+  for (std::size_t i = 0; i < path.size(); ++i) path[i] -= e[0] * denominator[i];
+  return path;
 }
 
 LoopPath loop_path(const Effect& effect, std::size_t order) {
-  const bool of_output = effect.coefficients.size() == loop_coefficients(true, order);
-  STILLHAND_EXPECTS(of_output || effect.coefficients.size() == loop_coefficients(false, order));
+  const Nonlinearity nonlinearity = effect_kind(effect.kind).feedback(effect);
+  STILLHAND_EXPECTS(fits_loop(effect.coefficients.size(), nonlinearity, order));
   const std::span<const double> all(effect.coefficients);
   LoopPath path;
   const auto in_part = [&](std::vector<double> e) {
     for (double& each : e) each *= effect.share;
     return e;
   };
-  if (of_output) {
+  if (nonlinearity.stop) {
+    path.e.assign(order + 1, 0.0);
+    path.e.front() = -effect.share;
+    return path;
+  }
+  if (all.size() == order) {
     path.e = in_part(late(all));
     return path;
   }
@@ -228,7 +241,9 @@ std::vector<Running> running(const LoopCase& each) {
   for (const Effect* effect : each.feedback) {
     Running loop{effect_kind(effect->kind).feedback(*effect),
                  loop_path(*effect, each.body->order())};
-    if (!effect->seen.empty()) {
+    if (loop.nonlinearity.stop) {
+      loop.stop = *loop.nonlinearity.stop - each.body->offset;
+    } else if (!effect->seen.empty()) {
       loop.low = effect->seen.front().lower_edge();
       loop.high = effect->seen.front().upper_edge();
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "services/core/diagnosis/model/effect.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/model.hpp"
 #include "services/core/diagnosis/model/steady_start.hpp"
 #include "services/core/diagnosis/signals.hpp"
@@ -20,6 +21,8 @@ namespace stillhand::diagnosis {
 ///   numbers) "inside":         A z = N u + M phi(z),         E = sum_{i<=p} e_i D^i, N alike,
 ///                                                   M = q^-1 sum_{i<p} m_i D^i       (3p + 2)
 ///
+///   a stop:           z = y_b before it,            E = -1                               (none)
+///
 /// M without a term of its own sample: no algebraic loop.
 struct LoopPath {
   std::vector<double> e;  ///< by powers of q^-1, p + 1
@@ -27,6 +30,8 @@ struct LoopPath {
   std::vector<double> m;  ///< p + 1, the first 0
 
   [[nodiscard]] bool of_output() const noexcept { return n.empty(); }
+  /// P of A z = .. + P phi(z), by powers of q^-1.
+  [[nodiscard]] std::vector<double> to_argument(const std::vector<double>& denominator) const;
 };
 
 /// A body, the effects that feed back in it, and what reaches it, by input.
@@ -46,8 +51,8 @@ struct LoopRun {
   std::vector<double> phi_before;     ///< [stretches] of the first phi(z)
 };
 
-/// Coefficients that a feedback effect has for a body of this order.
-std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept;
+/// Coefficients that a feedback effect of this nonlinearity has for a body of this order.
+bool fits_loop(std::size_t coefficients, const Nonlinearity& nonlinearity, std::size_t order);
 /// E times the effect's share, Eq. DG-68.
 LoopPath loop_path(const Effect& effect, std::size_t order);
 

@@ -40,14 +40,17 @@ Slopes slopes_of(const Effect& effect) {
   if (!(width > 0.0)) return slopes;
   LoopMemory memory;
   std::vector<double> up;
-  double before = nonlinearity.phi(lowest / nonlinearity.threshold, memory);
+  const auto phi_of = [&](double z) {
+    return nonlinearity.phi((z - nonlinearity.stop.value_or(0.0)) / nonlinearity.threshold, memory);
+  };
+  double before = phi_of(lowest);
   const double largest = std::abs(before) + 1.0;
   // Up, down and up again: an element with memory takes another way back.
   for (int way = 0; way < 3; ++way) {
     for (int i = 0; i <= kSteps; ++i) {
       const double share = static_cast<double>(way == 1 ? kSteps - i : i) / kSteps;
       const double z = lowest + share * width;
-      const double phi = nonlinearity.phi(z / nonlinearity.threshold, memory);
+      const double phi = phi_of(z);
       if (i > 0) {
         const double slope = (way == 1 ? before - phi : phi - before) * kSteps / width;
         slopes.least = std::min(slopes.least, slope);
@@ -163,7 +166,7 @@ class TriedLoop {
 // Eq. DG-57 b and c.
 bool is_proved(const Body& body, const Effect& effect) {
   const LoopPath path = loop_path(effect, body.order());
-  const Polynomial& back = path.of_output() ? path.e : path.m;
+  const Polynomial back = path.to_argument(body.denominator);
   const Slopes slopes = slopes_of(effect);
   return !slopes.remembers && poles_inside(closed(body.denominator, slopes.least, back)) &&
          contracts(body.denominator, back, slopes);

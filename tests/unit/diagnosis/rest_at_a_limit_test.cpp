@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// An output that rests at an end of its range, Eq. DG-89.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/core/diagnosis/diagnose.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr std::size_t kCount = 6000;
+constexpr double kLimit = 0.9;
+
+// A leaky tank, [V] over [V]: sum of a ride and two pulses that fill it.
+std::vector<double> inflow() {
+  std::vector<double> u = made::ride(kCount, 1);
+  for (const std::size_t first : {1400u, 4100u}) {
+    for (std::size_t n = first; n < first + 120; ++n) u[n] += 3.0;
+  }
+  return u;
+}
+
+// y(n) = 0.98 y(n-1) + 0.02 u(n-1) + noise, by a tank that overflows.
+std::vector<double> overflowing(const std::vector<double>& u) {
+  const auto noise = made::white(kCount, 7);
+  std::vector<double> y(kCount, 0.0);
+  for (std::size_t n = 1; n < kCount; ++n) {
+    y[n] = std::min(0.98 * y[n - 1] + 0.02 * u[n - 1] + 0.002 * noise[n], kLimit);
+  }
+  return y;
+}
+
+// The same tank without a rim, and a sensor that ends.
+std::vector<double> clipped(const std::vector<double>& u) {
+  std::vector<double> y = made::answer({0.0, 0.02}, {1.0, -0.98}, u);
+  const auto noise = made::white(kCount, 7);
+  for (std::size_t n = 0; n < kCount; ++n) y[n] = std::min(y[n] + 0.01 * noise[n], kLimit);
+  return y;
+}
+
+Diagnosis diagnosed(const std::vector<double>& u, const std::vector<double>& y) {
+  DiagnoseOptions options;
+  options.inputs = {"u"};
+  options.output = "y";
+  options.search.most_effects = 1;
+  return diagnose(made::measurement_of({{"u", "V", u}, {"y", "V", y}}), options);
+}
+
+// Two rests, in five of thirty blocks.
+TEST(RestAtALimitTest, ATankThatOverflowsTwiceIsStopped) {
+  const Diagnosis sut = diagnosed(inflow(), overflowing(inflow()));
+  ASSERT_EQ(sut.effects.size(), 1u);
+  EXPECT_EQ(sut.effects[0].effect.kind, "output_saturation");
+  EXPECT_EQ(sut.effects[0].effect.form, "stop above");
+  EXPECT_EQ(sut.effects[0].effect.value(0), kLimit);
+  EXPECT_EQ(sut.effects[0].carried, 1.0);
+}
+
+TEST(RestAtALimitTest, ATankThatRunsDryIsStoppedBelow) {
+  std::vector<double> u = inflow();
+  std::vector<double> y = overflowing(u);
+  for (std::vector<double>* each : {&u, &y}) {
+    for (double& value : *each) value = -value;
+  }
+  const Diagnosis sut = diagnosed(u, y);
+  ASSERT_EQ(sut.effects.size(), 1u);
+  EXPECT_EQ(sut.effects[0].effect.form, "stop below");
+  EXPECT_EQ(sut.effects[0].effect.value(0), -kLimit);
+}
+
+TEST(RestAtALimitTest, ASensorThatEndsIsNoStop) {
+  const Diagnosis sut = diagnosed(inflow(), clipped(inflow()));
+  ASSERT_EQ(sut.effects.size(), 1u);
+  EXPECT_EQ(sut.effects[0].effect.kind, "output_saturation");
+  EXPECT_FALSE(sut.effects[0].effect.form.starts_with("stop")) << sut.effects[0].effect.form;
+}
+
+// It rests at its end because the input does.
+TEST(RestAtALimitTest, AnOutputThatHasSettledHasNoLimit) {
+  std::vector<double> u(kCount, 0.0);
+  for (std::size_t n = 0; n < kCount; ++n) u[n] = n % 2000 < 1000 ? 0.3 : -1.0;
+  std::vector<double> y = made::answer({0.0, 0.05, 0.02}, {1.0, -0.9, 0.1}, u);
+  for (double& each : y) each = std::round(each * 200.0) / 200.0;
+  for (const FoundEffect& found : diagnosed(u, y).effects) {
+    EXPECT_FALSE(effect_kind(found.effect.kind).shows_in_rows(found.effect)) << found.effect.form;
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
