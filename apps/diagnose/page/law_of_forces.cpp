@@ -211,7 +211,8 @@ Law law_of(const Evidence& evidence, std::size_t which, const EffectTrace& trace
     case Stage::kOutputValue:
       return map_law(evidence, at, trace);
     case Stage::kFeedback:
-      return loop_law(evidence, at);
+      // A stop has no force of its own: it takes as much as its body goes beyond.
+      return kind.feedback(effect).stop ? Law{} : loop_law(evidence, at);
     case Stage::kTerm:
       break;
     case Stage::kInputTime:

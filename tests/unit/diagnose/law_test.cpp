@@ -98,6 +98,13 @@ TEST(LawTest, WhatHasAMemoryIsShownAsALoop) {
   EXPECT_FALSE(std::ranges::is_sorted(loop.x));
 }
 
+TEST(LawTest, AStopHasNoForceOfItsOwn) {
+  const Body mode{{{0.0, -0.0776, 0.0}}, {1.0, -1.78575, 0.81}, 0.0};
+  const Drawn drawn(
+      mode, {"output_saturation", "stop above", {}, {diagnosis::constant("limit", "N", 3.0)}, {}});
+  EXPECT_TRUE(drawn.sut.panels.empty());
+}
+
 TEST(LawTest, ASpringInsideTheBodyIsShownInForces) {
   const Body mode{{{0.0, -0.0776, 0.0}}, {1.0, -1.78575, 0.81}, 0.0};
   const Drawn drawn(
