@@ -55,6 +55,7 @@ std::vector<Role> every_role() {
       {{"hysteresis", "smooth inside the body", {}, {}, {}}, spring, kNone},
       {{"dead_zone", "at the input", {"a_y"}, {{"half_width", "m/s^2", 0.1}}, {}}, before, kNone},
       {{"output_saturation", "hard", {}, {{"limit", "N", 5.0}}, {}}, index_of(NotFelt{}), kNone},
+      {{"output_saturation", "stop above", {}, {{"limit", "N", 5.0}}, {}}, kNone, kNone},
       {{"input_saturation", "soft", {"a_y"}, {{"limit", "m/s^2", 1.0}}, {}}, before, kNone},
       {{"position_ripple", "one harmonic", {"theta"}, {{"f", "1/rad", 4.0}}, {1.0, 2.0}},
        kNone,
