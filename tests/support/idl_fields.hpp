@@ -36,8 +36,7 @@ std::string idl_name() {
 
 /// Body of a struct in the IDL texts.
 inline std::string idl_struct(const std::string& name) {
-  for (const auto text :
-       {topics::kControlLoopIdl, topics::kSessionIdl, topics::kModelIdl, topics::kClockIdl}) {
+  for (const auto text : topics::kIdlTexts) {
     const auto begin = text.find("struct " + name + " {");
     if (begin == std::string_view::npos) continue;
     const auto body = text.find('\n', begin) + 1;

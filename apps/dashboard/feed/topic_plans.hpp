@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -10,18 +11,21 @@
 
 namespace stillhand::dashboard {
 
-/// The catalogue in the order in which a fault is looked for: round the loop from the sensor on.
-inline constexpr std::array kFeedTopics{
-    &topics::kRawSample,      &topics::kSensed,          &topics::kMotorCommand,
-    &topics::kRigTruth,       &topics::kPlatformCommand, &topics::kTrackingSample,
-    &topics::kOperatorForce,  &topics::kPointer,         &topics::kServiceStatus,
-    &topics::kTrialControl,   &topics::kTrialAssignment, &topics::kFeedthroughModel,
-    &topics::kAugmentedModel, &topics::kEvent,           &topics::kClockQuestion,
-    &topics::kClockAnswer,    &topics::kClockOffset,     &topics::kHostStatus,
-    &topics::kSessionCommand, &topics::kSessionSources,  &topics::kPrompt,
-    &topics::kAnswer};
-static_assert(kFeedTopics.size() == topics::kCatalogue.size(),
-              "a topic of the catalogue is missing in kFeedTopics: add it here");
+/// Where a fault is looked for first: round the loop from the sensor on.
+inline constexpr std::array kLoopTopics{
+    &topics::kRawSample,     &topics::kSensed,          &topics::kMotorCommand,
+    &topics::kRigTruth,      &topics::kPlatformCommand, &topics::kTrackingSample,
+    &topics::kOperatorForce, &topics::kPointer,         &topics::kServiceStatus};
+
+/// The catalogue in the order in which a fault is looked for: kLoopTopics, then the others.
+inline constexpr auto kFeedTopics = [] {
+  auto list = topics::kCatalogue;
+  auto end = std::ranges::copy(kLoopTopics, list.begin()).out;
+  std::ranges::copy_if(topics::kCatalogue, end, [](const topics::Topic* topic) {
+    return std::ranges::find(kLoopTopics, topic) == kLoopTopics.end();
+  });
+  return list;
+}();
 
 /// What is expected of each of kFeedTopics, in their order.
 std::vector<TopicPlan> topic_plans(const Config& config);

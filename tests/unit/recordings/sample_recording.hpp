@@ -53,8 +53,10 @@ inline void write_sample(const std::string& path, bool close = true) {
   FileSink sink(path, Existing::kReplace);
   McapWriter writer(sink, {1024, Compression::kZstd});
   bool ok = writer.add_metadata("stillhand.session", {{"seed", "7"}}).ok();
-  const auto loop = writer.add_schema("stillhand_msgs::Sensed", "omgidl", topics::kControlLoopIdl);
-  const auto session = writer.add_schema("stillhand_msgs::Event", "omgidl", topics::kSessionIdl);
+  const auto loop = writer.add_schema("stillhand_msgs::Sensed", "omgidl",
+                                      topics::idl_of("stillhand_msgs::Sensed"));
+  const auto session =
+      writer.add_schema("stillhand_msgs::Event", "omgidl", topics::idl_of("stillhand_msgs::Event"));
   const auto sensed =
       writer.add_channel("stillhand/sensed", loop, "cdr", {{"qos_profile", "stream_1khz"}});
   const auto events = writer.add_channel("stillhand/event", session, "cdr");
@@ -78,8 +80,8 @@ inline void write_two_writers(const std::string& path,
   using namespace recording;
   FileSink sink(path, Existing::kReplace);
   McapWriter writer(sink);
-  const auto schema =
-      writer.add_schema("stillhand_msgs::Sensed", "omgidl", topics::kControlLoopIdl);
+  const auto schema = writer.add_schema("stillhand_msgs::Sensed", "omgidl",
+                                        topics::idl_of("stillhand_msgs::Sensed"));
   const auto first = writer.add_channel("stillhand/sensed", schema, "cdr", {{"writer", "first"}});
   const auto second = writer.add_channel("stillhand/sensed", schema, "cdr", second_texts);
   bool ok = true;
