@@ -182,7 +182,7 @@ stillhand_msgs::TrialAssignment assignment_of(const session::PlannedTrial& plann
   message.cancellation(planned.cancellation);
   for (const cancellation::Part& part : planned.parts) {
     stillhand_msgs::MitigationPart& to = message.parts().emplace_back();
-    // Kinds of core and bus have one order (services/messages/cancellation/codec.cpp).
+    // A kind is one number on the bus and in the core.
     to.kind(static_cast<stillhand_msgs::MitigationPartKind>(part.kind));
     to.values(part.values);
   }

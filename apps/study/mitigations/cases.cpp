@@ -11,44 +11,47 @@ namespace {
 using cancellation::PartKind;
 using cancellation::Recipe;
 
-void add(const cancellation::Part& part, const Ingredients& from, Recipe& recipe) {
-  const cancellation::HandCompliance& hand = from.average_hand;
+// With the numbers that were chosen, in place of those of the table of conditions, which a session
+// has.
+cancellation::Part chosen_of(const cancellation::Part& part, const Ingredients& from) {
+  const auto& [mass_kg, damping_n_s_m, stiffness_n_m, lever_m] = from.average_hand;
   const Chosen& chosen = from.chosen;
+  switch (part.kind) {
+    case PartKind::kImpedance: {
+      // Without stiffness it is a damper.
+      if (part.values[0] == 0.0) return {part.kind, {0.0, chosen.damping_n_s_m, 0.0}};
+      const cancellation::ImpedanceConfig& shaped = chosen.impedance.impedance;
+      return {part.kind, {shaped.stiffness_n_m, shaped.damping_n_s_m, shaped.mass_kg}};
+    }
+    case PartKind::kLmsForce:
+      return {part.kind, {chosen.lms_force_step, mass_kg, damping_n_s_m, stiffness_n_m}};
+    case PartKind::kPredictedSignal:
+      return {part.kind, {mass_kg, damping_n_s_m, stiffness_n_m, lever_m}};
+    case PartKind::kLmsSignal:
+      return {part.kind, {chosen.lms_signal_step}};
+    case PartKind::kLowPass:
+      return chosen.low_pass;
+    case PartKind::kNotch:
+      return chosen.notch;
+    default:
+      return part;
+  }
+}
+
+void add(const cancellation::Part& part, const Ingredients& from, Recipe& recipe) {
   switch (part.kind) {
     case PartKind::kForce:
       recipe.force = true;
-      if (!part.values.empty()) recipe.follow = hand;
+      if (!part.values.empty()) recipe.follow = from.average_hand;
       return;
     case PartKind::kSchedule:
       recipe.schedule = cancellation::ScheduleConfig{from.models.relaxed, from.models.holding, {}};
       return;
-    case PartKind::kImpedance:
-      recipe.impedance = chosen.impedance.impedance;
-      // Without stiffness it is a damper.
-      if (part.values[0] == 0.0) {
-        recipe.impedance = cancellation::ImpedanceConfig{.damping_n_s_m = chosen.damping_n_s_m};
-      }
-      return;
-    case PartKind::kLmsForce:
-      recipe.lms_force = cancellation::LmsConfig{
-          chosen.lms_force_step,
-          cancellation::SecondaryPath{hand.mass_kg, hand.damping_n_s_m, hand.stiffness_n_m}};
-      return;
     case PartKind::kSignal:
       recipe.signal = cancellation::SignalConfig{from.models.position, {}, {}};
       return;
-    case PartKind::kPredictedSignal:
-      recipe.predicted_signal = hand;
-      return;
-    case PartKind::kLmsSignal:
-      recipe.lms_signal = cancellation::LmsConfig{chosen.lms_signal_step, {}};
-      return;
-    case PartKind::kLowPass:
-      recipe.shaping = chosen.low_pass;
-      return;
-    case PartKind::kNotch:
-      recipe.shaping = chosen.notch;
-      return;
+    default:
+      recipe.parts.push_back(chosen_of(part, from));
   }
 }
 

@@ -32,8 +32,8 @@ inline constexpr std::array<const char*, 4> kModelOfNames{"none", "own", "averag
 
 /// Parameters that were chosen on other people, METHOD Eq. SU-18.
 struct Chosen {
-  cancellation::ShapingConfig low_pass;
-  cancellation::ShapingConfig notch;
+  cancellation::Part low_pass{cancellation::PartKind::kLowPass, {1.0, 0.7}};
+  cancellation::Part notch{cancellation::PartKind::kNotch, {1.0, 0.7}};
   double damping_n_s_m = 0.0;
   ImpedanceChoice impedance;
   ReducedChoice reduced;

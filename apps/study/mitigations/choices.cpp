@@ -153,7 +153,6 @@ TrialScene scene_of(const CampaignOptions& options, const population::Subject& s
 
 Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, std::uint64_t seed,
               unsigned threads, const OnCampaign& on_stage) {
-  using Shaping = cancellation::ShapingConfig;
   Chosen out;
   std::vector<KnownPerson> people;
   people.reserve(tutors.size());
@@ -174,41 +173,33 @@ Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, 
   const bool adaptive = wants(options, learns);
   if (!filters && !dampers && !adaptive) return out;
   const Trying trying(options, tutors, seed, threads);
+  // The values of `part` with the least ratio, `place` of which is tried.
+  const auto tried = [&](const char* what, const auto& values, cancellation::Part part,
+                         std::size_t place) {
+    const auto made = [&part, place](double value) {
+      part.values[place] = value;
+      return cancellation::Recipe{.parts = {part}};
+    };
+    part.values[place] = least(trying, what, values, made, out.log, on_stage);
+    return part;
+  };
   if (filters) {
-    out.low_pass.frequency_hz = least(
-        trying, "low-pass [Hz]", kLowPass_hz,
-        [](double f) { return cancellation::Recipe{.shaping = Shaping{.frequency_hz = f}}; },
-        out.log, on_stage);
-    const auto notch = [](double z) { return Shaping{Shaping::Kind::kNotch, kNotch_hz, z}; };
-    out.notch = notch(least(
-        trying, "notch at 1.2 Hz, damping ratio", kNotchDamping,
-        [&](double z) { return cancellation::Recipe{.shaping = notch(z)}; }, out.log, on_stage));
+    out.low_pass = tried("low-pass [Hz]", kLowPass_hz, out.low_pass, 0);
+    out.notch.values[0] = kNotch_hz;
+    out.notch = tried("notch at 1.2 Hz, damping ratio", kNotchDamping, out.notch, 1);
   }
   if (dampers) {
-    out.damping_n_s_m = least(
-        trying, "damping [N s/m]", kDamping_n_s_m,
-        [](double b) {
-          return cancellation::Recipe{.impedance =
-                                          cancellation::ImpedanceConfig{.damping_n_s_m = b}};
-        },
-        out.log, on_stage);
+    const cancellation::Part damper{PartKind::kImpedance, {0.0, 0.0, 0.0}};
+    out.damping_n_s_m = tried("damping [N s/m]", kDamping_n_s_m, damper, 1).values[1];
   }
   if (adaptive) {
-    out.lms_signal_step = least(
-        trying, "step of the signal's LMS", kSteps,
-        [](double mu) {
-          return cancellation::Recipe{.lms_signal = cancellation::LmsConfig{mu, {}}};
-        },
-        out.log, on_stage);
+    out.lms_signal_step =
+        tried("step of the signal's LMS", kSteps, {PartKind::kLmsSignal, {0.0}}, 0).values[0];
     const auto feel = population::mean_subject(options.population).who.arm;
-    const cancellation::SecondaryPath path{feel.effective_mass_kg, feel.effective_damping_n_s_m,
-                                           feel.effective_stiffness_n_m};
-    out.lms_force_step = least(
-        trying, "step of the force's LMS", kSteps,
-        [&](double mu) {
-          return cancellation::Recipe{.lms_force = cancellation::LmsConfig{mu, path}};
-        },
-        out.log, on_stage);
+    const cancellation::Part lms{
+        PartKind::kLmsForce,
+        {0.0, feel.effective_mass_kg, feel.effective_damping_n_s_m, feel.effective_stiffness_n_m}};
+    out.lms_force_step = tried("step of the force's LMS", kSteps, lms, 0).values[0];
   }
   return out;
 }

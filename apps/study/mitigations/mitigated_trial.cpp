@@ -38,10 +38,11 @@ human_operator::CrossoverConfig who_of(const TrialScene& scene, const rig::BodyC
   human_operator::CrossoverConfig who = scene.subject.who;
   who.seed = static_cast<std::int64_t>(scene.rig_seed & 0xffffffffu);
   who.arm = population::learnt_feel(body, {}, who.arm);
-  if (recipe.impedance) {
-    who.arm.effective_mass_kg += recipe.impedance->mass_kg;
-    who.arm.effective_damping_n_s_m += recipe.impedance->damping_n_s_m;
-    who.arm.effective_stiffness_n_m += recipe.impedance->stiffness_n_m;
+  for (const cancellation::Part& part : recipe.parts) {
+    if (part.kind != cancellation::PartKind::kImpedance) continue;
+    who.arm.effective_stiffness_n_m += part.values[0];
+    who.arm.effective_damping_n_s_m += part.values[1];
+    who.arm.effective_mass_kg += part.values[2];
   }
   return who;
 }

@@ -80,14 +80,15 @@ Assignment from_idl(const stillhand_msgs::TrialAssignment& message) {
 std::vector<Part> parts_of(const stillhand_msgs::TrialAssignment& message) {
   std::vector<Part> parts;
   parts.reserve(message.parts().size());
-  // Kinds of core and bus have one order.  A number that is no kind stays one, and is refused.
+  // A kind is one number on the bus and in the core.  A number that is no kind stays one, and is
+  // refused.
   for (const stillhand_msgs::MitigationPart& part : message.parts()) {
     parts.push_back(
         {static_cast<PartKind>(in_8_bits(static_cast<std::uint32_t>(part.kind()))), part.values()});
   }
   return parts;
 }
-static_assert(static_cast<std::size_t>(stillhand_msgs::PART_NOTCH) + 1 == kPartKinds);
+static_assert(stillhand_msgs::PART_NOTCH == static_cast<std::uint32_t>(PartKind::kNotch));
 
 signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message,
                                  const SamplingConfig& sampling) {

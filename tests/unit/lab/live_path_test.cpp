@@ -70,7 +70,11 @@ double live_error_mm(const TrialScene& scene, const cancellation::Recipe& recipe
   human_operator::CrossoverConfig who = scene.subject.who;
   who.seed = rig.seed;
   who.arm = population::learnt_feel(rig.body, {}, who.arm);
-  if (recipe.impedance) who.arm.effective_damping_n_s_m += recipe.impedance->damping_n_s_m;
+  for (const cancellation::Part& part : recipe.parts) {
+    if (part.kind == cancellation::PartKind::kImpedance) {
+      who.arm.effective_damping_n_s_m += part.values[1];
+    }
+  }
   human_operator::CrossoverOperator person(who);
   cancellation::Countermeasure mitigated({}, recipe);
   display::TrackingDisplay screen(display::TrackingDisplay::Config{});

@@ -34,12 +34,12 @@ Recipe everything() {
   out.model = control_model(model());
   out.schedule =
       ScheduleConfig{.relaxed = admittance::mean_arm(), .holding = admittance::mean_arm()};
-  out.impedance = ImpedanceConfig{.mass_kg = 0.2, .damping_n_s_m = 20.0, .stiffness_n_m = 300.0};
-  out.lms_force = LmsConfig{.step = 0.05, .path = SecondaryPath{}};
   out.signal = SignalConfig{
       .feedthrough_to_position = model(), .moved_by_motor = admittance::mean_arm(), .stick = {}};
-  out.lms_signal = LmsConfig{.step = 0.05, .path = {}};
-  out.shaping = ShapingConfig{};
+  out.parts = {{PartKind::kImpedance, {300.0, 20.0, 0.2}},
+               {PartKind::kLmsForce, {0.05, 1.394, 11.18, 1136.0}},
+               {PartKind::kLmsSignal, {0.05}},
+               {PartKind::kLowPass, {1.0, 0.7}}};
   return out;
 }
 
@@ -54,7 +54,10 @@ CountermeasureInput input(Tick tick, double accel_m_s2, double theta_rad, double
   return out;
 }
 
-// Each part alone, and all together.
+Recipe only(const Part& part) { return {.parts = {part}}; }
+const Part kDamper{PartKind::kImpedance, {0.0, 30.0, 0.0}};
+
+// Each that drives the motor alone, and all together.
 std::vector<Recipe> recipes() {
   const Recipe all = everything();
   std::vector<Recipe> out{all};
@@ -65,12 +68,9 @@ std::vector<Recipe> recipes() {
   one = {};
   one.schedule = all.schedule;
   out.push_back(one);
-  one = {};
-  one.impedance = all.impedance;
-  out.push_back(one);
-  one = {};
-  one.lms_force = all.lms_force;
-  out.push_back(one);
+  for (const Part& part : all.parts) {
+    if (row_of(part.kind)->drives_motor) out.push_back(only(part));
+  }
   one = {};
   one.perturbation = signal::Multisine(1000, 1000.0, {{3, 30.0, 0.7}});  // above the limit
   out.push_back(one);
@@ -199,8 +199,6 @@ TEST(CountermeasureTest, ASchedulesForceStillsTheStickOfAKnownArm) {
 // A damper of 30 N s/m leaves the share of the closed form |Z_s + Z|/|Z_s + Z + 30 s| in the band;
 // at 2 Hz the hand's impedance is about 1000 N/m and the damper adds 380j.
 TEST(CountermeasureTest, ADamperLeavesWhatItsImpedanceSays) {
-  Recipe recipe;
-  recipe.impedance = ImpedanceConfig{.damping_n_s_m = 30.0};
   double with = 0.0;
   double without = 0.0;
   for (int k = 7; k <= 20; ++k) {
@@ -210,13 +208,13 @@ TEST(CountermeasureTest, ADamperLeavesWhatItsImpedanceSays) {
     without += std::norm(arm.feedthrough / alone);
     with += std::norm(arm.feedthrough / (alone + 30.0 * s));
   }
-  EXPECT_NEAR(left_of(recipe, admittance::mean_arm()).stick, std::sqrt(with / without), 0.01);
+  EXPECT_NEAR(left_of(only(kDamper), admittance::mean_arm()).stick, std::sqrt(with / without),
+              0.01);
 }
 
 // The motor drives the stick by a model that is wrong, and the command knows it.
 TEST(CountermeasureTest, WhatTheMotorMovesIsTakenOffTheCommand) {
   Recipe recipe;
-  recipe.impedance = {};
   recipe.force = true;
   recipe.model = control_model(model());
   recipe.signal = SignalConfig{.feedthrough_to_position = {1000.0, {0.0}, {1.0}},
@@ -231,7 +229,7 @@ TEST(CountermeasureTest, WhatTheMotorMovesIsTakenOffTheCommand) {
 TEST(CountermeasureTest, ThePredictedSignalMovesNoMotor) {
   Recipe recipe;
   recipe.model = control_model(model());
-  recipe.predicted_signal = kAverageHand;
+  recipe.parts = {{PartKind::kPredictedSignal, {1.394, 11.18, 1136.0, kLever_m}}};
   const Left sut = left_of(recipe, admittance::mean_arm());
   EXPECT_NEAR(sut.stick, 1.0, 1e-9);
   EXPECT_GT(std::abs(sut.command - 1.0), 0.1);
@@ -261,7 +259,7 @@ TEST(CountermeasureTest, TheWeightsOfAnAdaptiveForceComeOutWithIt) {
   EXPECT_NE(weights[1], 0.0);
   // Without the motor against f^, what is left of it says nothing about the model.
   recipe.force = false;
-  recipe.impedance = ImpedanceConfig{.mass_kg = 0.0, .damping_n_s_m = 5.0, .stiffness_n_m = 0.0};
+  recipe.parts = {{PartKind::kImpedance, {0.0, 5.0, 0.0}}};
   EXPECT_EQ(weights_after(20'000), (AdaptiveGain::Pair{1.0, 0.0}));
 }
 
@@ -275,9 +273,8 @@ TEST(CountermeasureTest, AFilterOnTheCommandBeginsAndEndsWithoutAJump) {
     return 0.1 + 0.1 * std::sin(kTurn * kTheta_hz * 1e-3 * static_cast<double>(n));
   };
   constexpr double kMost_rad_tick = 0.1 * kTurn * kTheta_hz * 1e-3;
-  for (const auto kind : {ShapingConfig::Kind::kLowPass, ShapingConfig::Kind::kNotch}) {
-    Recipe recipe;
-    recipe.shaping = ShapingConfig{kind, 1.0, 0.7};
+  for (const PartKind kind : {PartKind::kLowPass, PartKind::kNotch}) {
+    const Recipe recipe = only({kind, {1.0, 0.7}});
     // The trial has begun, begins later, or begins again behind samples that are unsound.
     for (const Tick begins : {1, 700}) {
       Countermeasure sut({}, recipe);
@@ -318,8 +315,7 @@ TEST(CountermeasureTest, WithoutAPartOnTheCommandTheCommandIsTheStickToTheBit) {
   const auto theta = [](Tick n) { return 0.1 * std::sin(kTurn * 0.4e-3 * static_cast<double>(n)); };
   Recipe all = everything();
   all.signal.reset();
-  all.lms_signal.reset();
-  all.shaping.reset();
+  std::erase_if(all.parts, [](const Part& part) { return !row_of(part.kind)->drives_motor; });
   std::vector<Recipe> only_forces = recipes();
   only_forces.front() = all;
   for (const Recipe& recipe : only_forces) {
@@ -397,8 +393,7 @@ TEST(CountermeasureTest, NothingDoesNothing) {
 // A pole of 0.99 falls to 1 % in ln 0.01/ln 0.99 = 458.2 ticks; those of model() have a radius of
 // exp(-0.3 2 pi 3 Hz 1 ms) each: 814.4 ticks.
 TEST(CountermeasureTest, ItKnowsHowLongItsModelsSettle) {
-  Recipe recipe;
-  recipe.impedance = ImpedanceConfig{.damping_n_s_m = 30.0};
+  Recipe recipe = only(kDamper);
   EXPECT_EQ(Countermeasure({}, recipe).settle_ticks(), 0);
   recipe.signal = SignalConfig{{1000.0, {1e-5, 0.0}, {1.0, -0.99}}, {}, {}};
   EXPECT_EQ(Countermeasure({}, recipe).settle_ticks(), 459);

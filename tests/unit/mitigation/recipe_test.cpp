@@ -7,12 +7,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <string>
 
+#include "apps/libraries/session/core/conditions.hpp"
 #include "services/core/admittance/arm_fit.hpp"
+#include "services/core/cancellation/parts/command_filter.hpp"
+#include "services/core/cancellation/parts/command_shaping.hpp"
 #include "services/core/cancellation/parts/countermeasure.hpp"
+#include "services/core/cancellation/parts/lms_filter.hpp"
+#include "services/core/cancellation/parts/stick_impedance.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -29,30 +35,51 @@ std::string refusal(const std::vector<Part>& parts, const Position& known = kPos
   return support::refusal([&] { const PartList sut(recipe_of(parts, known, config)); });
 }
 
-TEST(RecipeTest, ValuesStandInTheOrderOfTheIdl) {
-  const Recipe lms = made({{PartKind::kLmsForce, {0.02, 1.0, 2.0, 300.0}}});
-  ASSERT_TRUE(lms.lms_force && lms.lms_force->path);
-  EXPECT_EQ(lms.lms_force->step, 0.02);
-  EXPECT_EQ(lms.lms_force->path->mass_kg, 1.0);
-  EXPECT_EQ(lms.lms_force->path->damping_n_s_m, 2.0);
-  EXPECT_EQ(lms.lms_force->path->stiffness_n_m, 300.0);
+// Moving stick and platform, and f^.
+Moment moment(Tick n) {
+  static const Trial kTrial{};
+  const double phase = 0.01 * static_cast<double>(n);
+  return {3.0 * std::sin(phase),
+          0.1 * std::cos(phase),
+          -std::sin(phase),
+          5.0 * std::sin(phase),
+          0.0,
+          n,
+          kTrial};
+}
+
+// Each as the class that its values make, at each of many ticks.
+TEST(RecipeTest, ValuesStandInTheOrderOfTheTable) {
+  const auto impedance = make_impedance({PartKind::kImpedance, {200.0, 60.0, 0.5}});
+  StickImpedance of_impedance({.mass_kg = 0.5, .damping_n_s_m = 60.0, .stiffness_n_m = 200.0});
+  const auto lms = make_lms_force({PartKind::kLmsForce, {0.02, 1.0, 2.0, 300.0}});
+  LmsFilter of_lms({.step = 0.02, .path = SecondaryPath{1.0, 2.0, 300.0}});
+  const auto notch = make_shaping({PartKind::kNotch, {1.2, 0.9}});
+  CommandShaping of_notch({ShapingConfig::Kind::kNotch, 1.2, 0.9});
+  const auto predicted =
+      make_predicted_signal({PartKind::kPredictedSignal, {1.0, 2.0, 300.0, 0.2}});
+  CommandFilter of_predicted({1.0, 2.0, 300.0, 0.2});
+  for (Tick n = 1; n < 2000; ++n) {
+    const Moment now = moment(n);
+    EXPECT_EQ(impedance->force_n(now), of_impedance.step(now.theta_rad, now.omega_rad_s));
+    EXPECT_EQ(lms->force_n(now), -of_lms.output(now.accel_m_s2));
+    lms->learn(now.theta_rad, true);
+    of_lms.learn(now.theta_rad, true);
+    EXPECT_EQ(notch->filtered_rad(now.theta_rad), of_notch.step(now.theta_rad));
+    EXPECT_EQ(predicted->moved_m(now, 1.0),
+              now.theta_rad - of_predicted.step(now.theta_rad, now.predicted_n));
+  }
+  EXPECT_NE(of_lms.weights()[0], 0.0);
+}
+
+TEST(RecipeTest, PartsOfModelsStandInTheRecipe) {
   const Recipe both = made({{PartKind::kForce}, {PartKind::kImpedance, {200.0, 60.0, 0.5}}});
-  ASSERT_TRUE(both.force && both.impedance);
+  EXPECT_TRUE(both.force);
   EXPECT_FALSE(both.follow);
-  EXPECT_EQ(both.impedance->stiffness_n_m, 200.0);
-  EXPECT_EQ(both.impedance->damping_n_s_m, 60.0);
-  EXPECT_EQ(both.impedance->mass_kg, 0.5);
+  EXPECT_EQ(both.parts, (std::vector<Part>{{PartKind::kImpedance, {200.0, 60.0, 0.5}}}));
   const Recipe adaptive = made({{PartKind::kForce, {1.0, 2.0, 300.0, 0.1}}});
   ASSERT_TRUE(adaptive.force && adaptive.follow);
   EXPECT_EQ(adaptive.follow->stiffness_n_m, 300.0);
-  const Recipe notch = made({{PartKind::kNotch, {1.2, 0.9}}});
-  ASSERT_TRUE(notch.shaping);
-  EXPECT_EQ(notch.shaping->kind, ShapingConfig::Kind::kNotch);
-  EXPECT_EQ(notch.shaping->frequency_hz, 1.2);
-  EXPECT_EQ(notch.shaping->damping_ratio, 0.9);
-  const Recipe filter = made({{PartKind::kPredictedSignal, {1.0, 2.0, 300.0, 0.1}}});
-  ASSERT_TRUE(!filter.force && filter.predicted_signal);
-  EXPECT_EQ(filter.predicted_signal->damping_n_s_m, 2.0);
   std::vector<double> arms(2 * admittance::kArmParameters, 0.0);
   arms[admittance::kArmMass] = 1.5;
   arms[admittance::kArmParameters + admittance::kArmMass] = 2.5;
@@ -73,7 +100,8 @@ TEST(RecipeTest, GainAndPhaseAreFollowedAt1kHzAlone) {
 TEST(RecipeTest, WhatIsUnsoundIsRefused) {
   using testing::HasSubstr;
   EXPECT_THAT(refusal({}), HasSubstr("at least one part"));
-  EXPECT_THAT(refusal({{static_cast<PartKind>(99), {}}}), HasSubstr("a kind of idl/session.idl"));
+  EXPECT_THAT(refusal({{static_cast<PartKind>(99), {}}}),
+              HasSubstr("a kind that this version knows"));
   EXPECT_THAT(refusal({{PartKind::kImpedance, {1.0, 2.0}}}), HasSubstr("2 values, want 3"));
   EXPECT_THAT(refusal({{PartKind::kSignal, {1.0}}}), HasSubstr("1 values, want 0"));
   EXPECT_THAT(refusal({{PartKind::kLmsSignal, {std::numeric_limits<double>::quiet_NaN()}}}),
@@ -87,21 +115,30 @@ TEST(RecipeTest, WhatIsUnsoundIsRefused) {
   EXPECT_NE(refusal({{PartKind::kLowPass, {0.0, 0.7}}}), "accepted");
 }
 
-// Sound values of each kind.
+// Sound values of each kind: those of the table of conditions, and the arms of a person.
 std::vector<Part> sound_parts() {
+  std::vector<Part> out;
+  for (const session::ConditionRow& row : session::condition_table()) {
+    std::ranges::copy(row.parts, std::back_inserter(out));
+  }
   std::vector<double> arms;
   for (int arm = 0; arm < 2; ++arm) {
     const admittance::ArmValues mean = admittance::mean_arm();
     arms.insert(arms.end(), mean.begin(), mean.end());
   }
-  return {{PartKind::kForce, {1.394, 11.18, 1136.0, 0.10}},
-          {PartKind::kSchedule, arms},
-          {PartKind::kImpedance, {200.0, 60.0, 0.5}},
-          {PartKind::kLmsForce, {0.01, 1.394, 11.18, 1136.0}},
-          {PartKind::kPredictedSignal, {1.394, 11.18, 1136.0, 0.10}},
-          {PartKind::kLmsSignal, {0.01}},
-          {PartKind::kLowPass, {0.7, 0.7}},
-          {PartKind::kNotch, {1.2, 1.0}}};
+  for (Part& part : out) {
+    if (part.kind == PartKind::kSchedule) part.values = arms;
+  }
+  return out;
+}
+
+// Otherwise no test feeds it.
+TEST(RecipeTest, EveryKindIsInTheTableOfConditions) {
+  const std::vector<Part> parts = sound_parts();
+  for (const PartRow& row : kPartRows) {
+    EXPECT_NE(std::ranges::find(parts, row.kind, &Part::kind), parts.end())
+        << static_cast<int>(row.kind);
+  }
 }
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -171,7 +208,8 @@ TEST(RecipeTest, AHandOrAnArmOfNoPersonIsRefusedByName) {
     EXPECT_THAT(refusal({{PartKind::kForce, {values[1], values[2], values[3], 0.10}}}),
                 HasSubstr("0.1 to 10 kg"));
   }
-  Part arms = sound_parts()[1];
+  const std::vector<Part> sound = sound_parts();
+  Part arms = *std::ranges::find(sound, PartKind::kSchedule, &Part::kind);
   arms.values[admittance::kArmParameters + admittance::kGripStiffness] = 1e9;
   EXPECT_THAT(refusal({arms}), HasSubstr("grip_stiffness_n_m = 1e+09"));
 }

@@ -15,9 +15,9 @@
 /// Pure: no clock, no I/O.
 namespace stillhand::session {
 
-/// In the order of the table.  A to C are the conditions of the paper, section III-C.  D to F, all
-/// with the motor off, are the alternatives that its section V proposes to compare with the motor.
-/// The platform moves in all but A.
+/// A row of the table, by its place; those behind the last enumerator have none.  A to C are of the
+/// paper, section III-C.  D to F, all with the motor off, are the alternatives that its section V
+/// proposes to compare with the motor.  The platform moves in all but A.
 enum class Condition : std::uint8_t {
   kA,
   kB,

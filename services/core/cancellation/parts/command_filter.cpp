@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "services/core/cancellation/parts/part_step.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
 
@@ -34,5 +35,23 @@ signal::SecondOrderLag lag(const HandCompliance& hand) {
 
 CommandFilter::CommandFilter(const HandCompliance& hand)
     : compliance_m_n_(1.0 / hand.stiffness_n_m), lever_m_(hand.lever_m), lag_(lag(hand)) {}
+
+namespace {
+class PredictedSignalStep : public StepOf<PredictedSignalStep> {
+ public:
+  explicit PredictedSignalStep(const HandCompliance& hand) : filter_(hand) {}
+  double moved_m(const Moment& now, double lever_m) noexcept override {
+    return lever_m * (now.theta_rad - filter_.step(now.theta_rad, now.predicted_n));
+  }
+
+ private:
+  CommandFilter filter_;
+};
+}  // namespace
+
+std::unique_ptr<PartStep> make_predicted_signal(const Part& part) {
+  const std::vector<double>& v = part.values;
+  return std::make_unique<PredictedSignalStep>(sound_hand(part, {v[0], v[1], v[2], v[3]}));
+}
 
 }  // namespace stillhand::cancellation

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "services/core/cancellation/parts/part_step.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
 
@@ -34,6 +35,24 @@ void CommandShaping::start(double theta_rad) noexcept {
   section_.s2 = (section_.b2 - section_.a2) * theta_rad;
   section_.s1 = (section_.b1 - section_.a1) * theta_rad + section_.s2;
   started_ = true;
+}
+
+namespace {
+class ShapingStep : public StepOf<ShapingStep> {
+ public:
+  explicit ShapingStep(const ShapingConfig& config) : shaping_(config) {}
+  double filtered_rad(double theta_rad) noexcept override { return shaping_.step(theta_rad); }
+  void restart() noexcept override { shaping_.restart(); }
+
+ private:
+  CommandShaping shaping_;
+};
+}  // namespace
+
+std::unique_ptr<PartStep> make_shaping(const Part& part) {
+  const auto kind =
+      part.kind == PartKind::kNotch ? ShapingConfig::Kind::kNotch : ShapingConfig::Kind::kLowPass;
+  return std::make_unique<ShapingStep>(ShapingConfig{kind, part.values[0], part.values[1]});
 }
 
 }  // namespace stillhand::cancellation

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "services/core/cancellation/parts/part_step.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
 
@@ -71,6 +72,41 @@ void LmsFilter::learn(double error_m, bool learns) noexcept {
     weight += scale * reference_[from];
     from = from >= kSpacing_ticks ? from - kSpacing_ticks : from + accel_.size() - kSpacing_ticks;
   }
+}
+
+namespace {
+class LmsForceStep : public StepOf<LmsForceStep> {
+ public:
+  explicit LmsForceStep(const LmsConfig& config) : filter_(config) {}
+  double force_n(const Moment& now) noexcept override { return -filter_.output(now.accel_m_s2); }
+  void learn(double x_m, bool learns) noexcept override { filter_.learn(x_m, learns); }
+
+ private:
+  LmsFilter filter_;
+};
+
+class LmsSignalStep : public StepOf<LmsSignalStep> {
+ public:
+  explicit LmsSignalStep(const LmsConfig& config) : filter_(config) {}
+  double moved_m(const Moment& now, double /*lever_m*/) noexcept override {
+    return moved_m_ = filter_.output(now.accel_m_s2);
+  }
+  void learn(double x_m, bool learns) noexcept override { filter_.learn(x_m - moved_m_, learns); }
+
+ private:
+  LmsFilter filter_;
+  double moved_m_ = 0.0;  ///< y at this tick
+};
+}  // namespace
+
+std::unique_ptr<PartStep> make_lms_force(const Part& part) {
+  const std::vector<double>& v = part.values;
+  sound_hand(part, {v[1], v[2], v[3], kAverageHand.lever_m});
+  return std::make_unique<LmsForceStep>(LmsConfig{v[0], SecondaryPath{v[1], v[2], v[3]}});
+}
+
+std::unique_ptr<PartStep> make_lms_signal(const Part& part) {
+  return std::make_unique<LmsSignalStep>(LmsConfig{part.values[0], {}});
 }
 
 }  // namespace stillhand::cancellation

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "services/core/cancellation/control_model_filter.hpp"
 #include "services/core/cancellation/parts/adaptive_gain.hpp"
-#include "services/core/cancellation/parts/command_filter.hpp"
-#include "services/core/cancellation/parts/command_shaping.hpp"
 #include "services/core/cancellation/parts/linear_arm.hpp"
-#include "services/core/cancellation/parts/lms_filter.hpp"
+#include "services/core/cancellation/parts/part_step.hpp"
 #include "services/core/cancellation/parts/perturbation.hpp"
 #include "services/core/cancellation/parts/scheduled_force.hpp"
-#include "services/core/cancellation/parts/stick_impedance.hpp"
 
 namespace stillhand::cancellation {
 
@@ -30,25 +29,10 @@ struct Recipe {
   bool force = false;                      ///< the motor acts against f^
   std::optional<HandCompliance> follow = {};    ///< gain and phase of f^ are followed (CC-10)
   std::optional<ScheduleConfig> schedule = {};  ///< the force of Eq. MI-5
-  std::optional<ImpedanceConfig> impedance = {};
-  std::optional<LmsConfig> lms_force = {};
   std::optional<SignalConfig> signal = {};
-  std::optional<HandCompliance> predicted_signal = {};  ///< CC-5: what f^ moves
-  std::optional<LmsConfig> lms_signal = {};
-  std::optional<ShapingConfig> shaping = {};
   std::optional<signal::Multisine> perturbation = {};  ///< [N] as its accel_m_s2, CC-17
+  std::vector<Part> parts = {};  ///< those that are made of their values alone: PartRow::make
   double lever_m = 0.10;
-};
-
-/// One tick, as parts see it: sound, and within the range of the sensors.
-struct Moment {
-  double accel_m_s2;
-  double theta_rad;
-  double omega_rad_s;
-  double predicted_n;  ///< f^
-  double motor_n;      ///< of the motor since the tick before
-  Tick tick;
-  const Trial& trial;
 };
 
 /// The parts of a countermeasure: what each adds to the force and takes off the command, METHOD
@@ -62,20 +46,20 @@ class PartList {
   /// The motor acts against f^.
   [[nodiscard]] bool acts_against_force() const noexcept { return force_; }
   /// A part needs f^.
-  [[nodiscard]] bool needs_force() const noexcept { return force_ || predicted_signal_; }
+  [[nodiscard]] bool needs_force() const noexcept { return needs_force_; }
 
   /// What follows gain and phase, as at its start; none: as the model says.
   [[nodiscard]] const std::optional<AdaptiveGain>& follow() const noexcept { return follow_; }
 
   /// Of all parts but the force, in full effect [N].
   double forces(const Moment& now) noexcept;
-  /// What is to be taken off the stick's angle in full effect [rad], the shaping included.
+  /// What is to be taken off the stick's angle in full effect [rad], a filter included.
   double off(const Moment& now) noexcept;
   /// After both of the same tick.  @param learns  all is in full effect
   void learn(double theta_rad, bool learns) noexcept;
   /// What they know of the stick is old.
   void restart() noexcept {
-    if (shaping_) shaping_->restart();
+    for (const OwnedStep& step : steps_) step->restart();
   }
 
   /// w of Eq. MI-5; 0 without a schedule.
@@ -87,23 +71,21 @@ class PartList {
   [[nodiscard]] std::int64_t settle_ticks() const noexcept { return settle_ticks_; }
 
  private:
+  void add(const Part& part);
   /// Off the stick's displacement [m].
   double moved(const Moment& now) noexcept;
 
   bool force_;
+  bool needs_force_;
   double lever_m_;
   std::optional<AdaptiveGain> follow_;
   std::optional<Perturbation> perturbation_;
   std::optional<ScheduledForce> schedule_;
-  std::optional<StickImpedance> impedance_;
-  std::optional<LmsFilter> lms_force_;
   std::optional<ControlModelFilter> signal_;
   std::optional<LinearArm> moved_by_motor_;
-  std::optional<CommandFilter> predicted_signal_;
-  std::optional<LmsFilter> lms_signal_;
-  std::optional<CommandShaping> shaping_;
+  std::vector<OwnedStep> steps_;       ///< in the order of kPartRows
+  std::optional<std::size_t> filter_;  ///< which of them filters the command
   std::int64_t settle_ticks_ = 0;
-  double lms_moved_m_ = 0.0;  ///< y of the signal form at this tick
 };
 
 }  // namespace stillhand::cancellation

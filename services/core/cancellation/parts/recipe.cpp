@@ -17,10 +17,6 @@ namespace {
 
 constexpr std::size_t kArmValues = admittance::kArmParameters;
 
-std::string key_of(const Part& part) {
-  return "mitigation.part " + std::to_string(static_cast<int>(part.kind));
-}
-
 [[noreturn]] void refuse(const Part& part, const std::string& want) {
   throw ConfigError(key_of(part), std::to_string(part.values.size()) + " values", want);
 }
@@ -30,22 +26,6 @@ void require(const Part& part, std::size_t count) {
   if (!std::ranges::all_of(part.values, [](double value) { return std::isfinite(value); })) {
     throw ConfigError(key_of(part), "a value that is not finite", "finite values");
   }
-}
-
-void require_hand(const Part& part, const HandCompliance& hand) {
-  if (is_hand(hand)) return;
-  std::ostringstream got;
-  got << "a hand of " << hand.mass_kg << " kg, " << hand.damping_n_s_m << " N s/m, "
-      << hand.stiffness_n_m << " N/m, lever " << hand.lever_m << " m";
-  throw ConfigError(key_of(part), got.str(),
-                    "0.1 to 10 kg, 0.01 to 1 of critical damping, 50 to 10000 N/m, lever 0.02 to "
-                    "0.5 m");
-}
-
-HandCompliance hand(const Part& part) {
-  const HandCompliance hand{part.values[0], part.values[1], part.values[2], part.values[3]};
-  require_hand(part, hand);
-  return hand;
 }
 
 // A fit leaves a value that the data do not determine far from everybody's, so the bounds are wide:
@@ -82,7 +62,8 @@ void add_force(const Part& part, Recipe& recipe) {
   recipe.force = true;
   if (part.values.empty()) return;
   require(part, 4);
-  recipe.follow = hand(part);
+  recipe.follow =
+      sound_hand(part, {part.values[0], part.values[1], part.values[2], part.values[3]});
 }
 
 void add_schedule(const Part& part, Recipe& recipe) {
@@ -120,54 +101,20 @@ void add_signal(const Part& part, const std::optional<signal::DifferenceModel>& 
   recipe.signal = SignalConfig{*position, {}, {}};
 }
 
-void add_lms_force(const Part& part, Recipe& recipe) {
-  require(part, 4);
-  const SecondaryPath path{part.values[1], part.values[2], part.values[3]};
-  require_hand(part, {path.mass_kg, path.damping_n_s_m, path.stiffness_n_m, recipe.lever_m});
-  recipe.lms_force = LmsConfig{part.values[0], path};
-}
-
 void add(const Part& part, const std::optional<signal::DifferenceModel>& position, Recipe& recipe) {
-  const std::vector<double>& values = part.values;
-  switch (part.kind) {
-    case PartKind::kForce:
-      return add_force(part, recipe);
-    case PartKind::kSchedule:
-      return add_schedule(part, recipe);
-    case PartKind::kImpedance:
-      require(part, 3);
-      recipe.impedance = ImpedanceConfig{
-          .mass_kg = values[2], .damping_n_s_m = values[1], .stiffness_n_m = values[0]};
-      return;
-    case PartKind::kLmsForce:
-      return add_lms_force(part, recipe);
-    case PartKind::kSignal:
-      return add_signal(part, position, recipe);
-    case PartKind::kPredictedSignal:
-      require(part, 4);
-      recipe.predicted_signal = hand(part);
-      return;
-    case PartKind::kLmsSignal:
-      require(part, 1);
-      recipe.lms_signal = LmsConfig{values[0], {}};
-      return;
-    case PartKind::kLowPass:
-    case PartKind::kNotch:
-      require(part, 2);
-      recipe.shaping = ShapingConfig{part.kind == PartKind::kNotch ? ShapingConfig::Kind::kNotch
-                                                                   : ShapingConfig::Kind::kLowPass,
-                                     values[0], values[1]};
-      return;
-  }
-  refuse(part, "a kind of idl/session.idl");
+  const PartRow* const row = row_of(part.kind);
+  if (row == nullptr) refuse(part, "a kind that this version knows");
+  if (part.kind == PartKind::kForce) return add_force(part, recipe);
+  if (part.kind == PartKind::kSchedule) return add_schedule(part, recipe);
+  if (part.kind == PartKind::kSignal) return add_signal(part, position, recipe);
+  require(part, row->values);
+  recipe.parts.push_back(part);
 }
 
-// Parts that would overwrite each other in a recipe.
-int place_of(PartKind kind) noexcept {
-  if (kind == PartKind::kNotch) return static_cast<int>(PartKind::kLowPass);
-  // The motor would take away what CC-5 takes off the command.
-  if (kind == PartKind::kPredictedSignal) return static_cast<int>(PartKind::kForce);
-  return static_cast<int>(kind);
+// Parts that would overwrite each other in a recipe have one.
+PartKind place_of(PartKind kind) {
+  const PartRow* const row = row_of(kind);
+  return row == nullptr ? kind : row->in_place_of.value_or(kind);
 }
 
 }  // namespace
@@ -176,7 +123,7 @@ Recipe recipe_of(const std::vector<Part>& parts,
                  const std::optional<signal::DifferenceModel>& position, const Config& config) {
   if (parts.empty()) throw ConfigError("mitigation", "no part", "at least one part");
   Recipe recipe;
-  std::set<int> places;
+  std::set<PartKind> places;
   for (const Part& part : parts) {
     if (!places.insert(place_of(part.kind)).second) {
       throw ConfigError("mitigation", "two parts of one place", "each part once");

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "services/core/cancellation/parts/part_step.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
 
@@ -35,6 +36,24 @@ double StickImpedance::step(double theta_rad, double omega_rad_s) noexcept {
   slow_m_s_ += kControlPeriod_s * a_m_s2;
   // Eq. MI-2.
   return -(config_.stiffness_n_m * x_m + config_.damping_n_s_m * v_m_s + config_.mass_kg * a_m_s2);
+}
+
+namespace {
+class ImpedanceStep : public StepOf<ImpedanceStep> {
+ public:
+  explicit ImpedanceStep(const ImpedanceConfig& config) : impedance_(config) {}
+  double force_n(const Moment& now) noexcept override {
+    return impedance_.step(now.theta_rad, now.omega_rad_s);
+  }
+
+ private:
+  StickImpedance impedance_;
+};
+}  // namespace
+
+std::unique_ptr<PartStep> make_impedance(const Part& part) {
+  return std::make_unique<ImpedanceStep>(ImpedanceConfig{
+      .mass_kg = part.values[2], .damping_n_s_m = part.values[1], .stiffness_n_m = part.values[0]});
 }
 
 }  // namespace stillhand::cancellation
