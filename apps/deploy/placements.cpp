@@ -77,7 +77,7 @@ void Placements::refuse_absent(const Entry& hosts) const {
       if (placed_.contains({std::string(service), rig.number})) continue;
       throw ConfigError(hosts.place + ": inventory.hosts",
                         fmt::format("no host that runs {} for rig {}", service, rig.name),
-                        "each of the nine services on exactly one host for each rig");
+                        "each service on exactly one host for each rig");
     }
   }
 }

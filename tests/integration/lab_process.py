@@ -25,7 +25,8 @@ INSPECT = BUILD / "tests" / "inspect_recording"
 STRANGER = BUILD / "tests" / "stranger"
 EQUIVALENCE = BUILD / "tests" / "equivalence_live_recording"
 
-SERVICES = ("motion", "rig", "sensing", "cancellation", "display", "human_operator", "identification", "recorder")
+# In the order of the table of processes.
+SERVICES = tuple(re.findall(r'Process{\.name = "(\w+)", \.launch', (SOURCE / "idl/processes.hpp").read_text()))
 CTEST_SKIPPED = 77
 TICKS_PER_S = 1000
 FORCE_LIMIT_TICKS = 50  # the motor's force ramps to zero within 40 ticks, and a tick is at most 5 ms late, twice

@@ -13,16 +13,16 @@ import subprocess
 import tempfile
 import time
 
-from lab_process import BUILD, INSPECT, STILLHAND
+from lab_process import BUILD, INSPECT, SERVICES as ALL, STILLHAND
 
 TOOLS = ("ip", "tc", "unshare", "nsenter", "iptables", "mount")
 # Services of the lab under test. The loop of sensor, canceller and motor stays on one machine (deploy/README.md).
 SERVICES = {
     "rig-pc": ["rig", "sensing", "motion", "cancellation"],
     "screen-pc": ["display", "human_operator"],
-    "desk": ["identification", "recorder", "experiment"],
 }
 HERE = "desk"
+SERVICES[HERE] = [each for each in (*ALL, "experiment") if each not in sum(SERVICES.values(), [])]
 LAB = "test"
 KEYS_THERE = f"/etc/stillhand/{LAB}/security"
 CLOCKS_APART_S = 1000

@@ -71,9 +71,9 @@ struct Stand {
 class MitigationProcessTest : public testing::Test {
  protected:
   MitigationProcessTest() {
-    for (const char* name : {"experiment", "motion", "rig", "sensing", "human_operator",
-                             "identification", "recorder"}) {
-      stands_[name] = std::make_unique<Stand>(name);
+    for (const std::string_view name : topics::kServices) {
+      if (name == "cancellation" || name == "display") continue;
+      stands_[std::string(name)] = std::make_unique<Stand>(std::string(name));
     }
     control_ = of("experiment").publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
     sources_ = of("experiment").publisher<stillhand_msgs::SessionSources>(topics::kSessionSources);

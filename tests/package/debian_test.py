@@ -260,8 +260,8 @@ class InstalledTest(unittest.TestCase):
 
     def test_generated_units_start_what_is_installed(self):
         (self.system.root / "tmp/lab.yaml").write_text(
-            "lab: hall\nhosts:\n  - name: desk\n    address: 192.168.7.1\n    services: [rig, sensing, motion, "
-            "cancellation, display, human_operator, identification, recorder, experiment]\n")
+            "lab: hall\nhosts:\n  - name: desk\n    address: 192.168.7.1\n    services: "
+            f"[{', '.join((*lab_process.SERVICES, 'experiment'))}]\n")
         self.good("stillhand", "deploy", "generate", "/tmp/lab.yaml", "--out", "/tmp/generated")
         units = [path.read_text() for path in (self.system.root / "tmp/generated/desk").glob("*.service")]
         self.assertEqual(len(units), len(lab_process.SERVICES))

@@ -121,7 +121,7 @@ TEST(LabProfilesTest, AHostWithManyProcessesIsSoughtAtAsManyPorts) {
       inventory.hosts[0].services.push_back({std::string(service), rig});
     }
   }
-  EXPECT_EQ(participants_sought(inventory), 45U + 7U);
+  EXPECT_EQ(participants_sought(inventory), 5 * topics::kServices.size() + 7U);
 }
 
 TEST(LabProfilesTest, ClientsKnowTheServerOfTheFirstHost) {

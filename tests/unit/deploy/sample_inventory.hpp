@@ -2,9 +2,12 @@
 // Inventories for tests, in folders that go with them.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 
 #include "apps/deploy/inventory.hpp"
 #include "idl/topics.hpp"
@@ -12,9 +15,16 @@
 
 namespace stillhand::deploy {
 
-inline const std::string kAllServices =
-    "motion, rig, sensing, cancellation, display, human_operator, identification, recorder, "
-    "experiment";
+/// Every process but those, as an inventory lists them.
+inline std::string all_but(std::initializer_list<std::string_view> others) {
+  std::string list;
+  for (const std::string_view service : topics::kServices) {
+    if (std::ranges::find(others, service) != others.end()) continue;
+    list += (list.empty() ? "" : ", ") + std::string(service);
+  }
+  return list;
+}
+inline const std::string kAllServices = all_but({});
 
 /// A folder of its own for a test.
 class SampleFolder : public support::Folder {

@@ -49,8 +49,7 @@ class HostsTest : public testing::Test {
     return support::refusal([&] { const Hosts sut(options_); });
   }
 
-  const std::string screen_here_ =
-      "cancellation, display, human_operator, identification, recorder, experiment";
+  const std::string screen_here_ = deploy::all_but({"motion", "rig", "sensing"});
   deploy::SampleFolder folder_;
   LabOptions options_;
 };
@@ -119,11 +118,11 @@ TEST_F(HostsTest, AMouseNeedsDisplayAndOperatorOnOneHost) {
   inventory(two_hosts("motion, rig, sensing", screen_here_));
   EXPECT_EQ(refusal(), "accepted");
   inventory(two_hosts("motion, rig, sensing, display",
-                      "cancellation, human_operator, identification, recorder, experiment"));
+                      deploy::all_but({"motion", "rig", "sensing", "display"})));
   EXPECT_THAT(refusal(),
               AllOf(StartsWith("--operator: "), HasSubstr("display"), HasSubstr("human_operator")));
   inventory(two_hosts("motion, rig, sensing, display, human_operator",
-                      "cancellation, identification, recorder, experiment"));
+                      deploy::all_but({"motion", "rig", "sensing", "display", "human_operator"})));
   EXPECT_EQ(refusal(), "accepted");
 }
 
