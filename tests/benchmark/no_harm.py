@@ -12,6 +12,7 @@ exit status is 1 where a model with effects is more than 5 % worse than the line
 """
 import argparse
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -21,11 +22,9 @@ import numpy
 from carried_chain import Chain
 from carried_pairs import Pair
 from carried_table import WORST, ratio
-from recorded_data import BUILD
+from recorded_data import BUILD, SOURCE
 
-KINDS = ("delay", "resonance", "coupled_input", "coulomb_friction", "nonlinear_stiffness", "asymmetry", "hysteresis",
-         "dead_zone", "output_saturation", "input_saturation", "position_ripple", "tone", "drift", "time_varying_gain",
-         "regime_change", "clock_drift", "bilinear", "transients", "none")
+KINDS = (*re.findall(r'"(\w+)"', (SOURCE / "tests/planted/kind.hpp").read_text()), "none")
 # Noise of 5, 10, 16 and 30 % of the force, and what else is rough, in turn.
 CONDITIONS = (
     dict(snr=26, strength=0.25),

@@ -31,11 +31,10 @@ enum class Kind {
   kTransients,
 };
 
-inline constexpr std::array<std::string_view, 18> kKindNames{
-    "delay",           "resonance",  "coupled_input", "coulomb_friction",  "nonlinear_stiffness",
-    "asymmetry",       "hysteresis", "dead_zone",     "output_saturation", "input_saturation",
-    "position_ripple", "tone",       "drift",         "time_varying_gain", "regime_change",
-    "clock_drift",     "bilinear",   "transients"};
+inline constexpr auto kKindNames = std::to_array<std::string_view>(
+    {"delay", "resonance", "coupled_input", "coulomb_friction", "nonlinear_stiffness", "asymmetry",
+     "hysteresis", "dead_zone", "output_saturation", "input_saturation", "position_ripple", "tone",
+     "drift", "time_varying_gain", "regime_change", "clock_drift", "bilinear", "transients"});
 
 inline std::string_view name_of(Kind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
 

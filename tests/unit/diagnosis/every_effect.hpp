@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "services/core/diagnosis/model/effect.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/examples.hpp"
 #include "tests/unit/diagnosis/effects_next_to_the_body.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-/// One effect of every kind and form, ready to run next to made::two_pole_body().
+/// One effect of every kind and form, or a kind's own examples, ready to run next to
+/// made::two_pole_body().
 namespace stillhand::diagnosis::made {
 
 /// The channels that they read: u (input), a_x, theta, omega, temp; and the output y.
@@ -158,6 +162,18 @@ inline std::vector<Effect> every_effect() {
     all.insert(all.end(), part.begin(), part.end());
   }
   all.push_back(one_burst());
+  const Model model = model_of(two_pole_body());
+  const Signals signals(every_channel(600, 11), {"u"}, "y");
+  for (const EffectKind* kind : effect_kinds()) {
+    const auto* const maker = dynamic_cast<const MakesExamples*>(kind);
+    if (maker == nullptr) continue;
+    // Of measured channels: one that is made of others looks ahead.
+    for (const Effect& own : maker->examples(model, signals)) {
+      const bool measured = std::ranges::none_of(
+          own.channels, [&](const auto& channel) { return signals.at(channel).derived; });
+      if (measured) all.push_back(own);
+    }
+  }
   return all;
 }
 

@@ -32,7 +32,8 @@ TEST(EveryEffectTest, NoKindIsMissingFromTheList) {
   for (const Effect& sut : made::every_effect()) listed.insert(sut.kind);
   for (const EffectKind* kind : effect_kinds()) {
     EXPECT_TRUE(listed.contains(std::string(kind->name())))
-        << kind->name() << ": add one effect for each of its forms to a list in every_effect.hpp";
+        << kind->name()
+        << ": derive it from MakesExamples, or add its forms to a list in every_effect.hpp";
   }
 }
 

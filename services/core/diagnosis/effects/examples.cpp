@@ -134,6 +134,10 @@ std::vector<Effect> examples(const Model& model, const Signals& signals) {
   add(of_time(signals));
   for (const Signal& signal : signals.all()) add(of_channel(signal, signals));
   all.push_back(burst_of(signals));
+  for (const EffectKind* kind : effect_kinds()) {
+    const auto* const own = dynamic_cast<const MakesExamples*>(kind);
+    if (own != nullptr) add(own->examples(model, signals));
+  }
   return all;
 }
 
