@@ -160,8 +160,11 @@ class SessionTest(BrowserCase):
         lab.wait_for("the alarm in the list", lambda: page.first_alarms_seen(0, raised), TRIAL_LIMIT_S)
         asked_ms = now_ms()
         acknowledge()
-        lab.wait_for("an acknowledgement", lambda: page.first_alarms_seen(
-            asked_ms, lambda alarms: not raised(alarms)), TRIAL_LIMIT_S)
+        try:
+            lab.wait_for("an acknowledgement", lambda: page.first_alarms_seen(
+                asked_ms, lambda alarms: not raised(alarms)), TRIAL_LIMIT_S)
+        except AssertionError as error:
+            raise AssertionError(f"{error}; answer: {page.text('answer')!r}, alarms: {page.text('alarms')!r}") from error
         self.assertRegex(page.text("answer"), "Acknowledge: asked at")
 
     def assert_no_force_behind(self, lab, tick, took_ms):

@@ -74,6 +74,19 @@ std::string not_mitigated_in(const SessionRecording& recorded, const SessionTria
   return fmt::format("ran without {} in {:.0f} % of it", trial.named, 100.0 * share);
 }
 
+// The model of an input alone; its map may be anything.
+bool is_one_input(const cancellation::ControlModel& model) {
+  return model.inputs.size() == 1 && !model.loop && model.output.values.empty() &&
+         model.paths.empty() && model.waves.empty();
+}
+
+bool is_identified(const SessionRecording& recorded, const cancellation::ControlModel& model) {
+  return is_one_input(model) && std::ranges::any_of(recorded.models, [&](const auto& each) {
+           return each.control_numerator() == model.inputs[0].numerator &&
+                  each.control_denominator() == model.denominator;
+         });
+}
+
 std::string name_of(std::int32_t model) {
   return model < 0 ? "no model" : fmt::format("model {}", model);
 }
@@ -90,15 +103,17 @@ std::optional<Condition> condition_in(const SessionRecording& recorded, const Se
   const auto* control = in_force(recorded, trial.trial.start_tick, rig).control;
   if (control == nullptr) return kC;
   const cancellation::ControlModel model = cancellation::from_idl(*control);
-  const bool plain = model.inputs.size() == 1 && model.inputs[0].map.values.empty() &&
-                     !model.loop && model.output.values.empty() && model.paths.empty() &&
-                     model.waves.empty();
-  const bool own = plain && std::ranges::any_of(recorded.models, [&](const auto& each) {
-                     return each.control_numerator() == model.inputs[0].numerator &&
-                            each.control_denominator() == model.denominator;
-                   });
-  if (!own) return kCPlus;
+  if (!is_identified(recorded, model) || !model.inputs[0].map.values.empty()) return kCPlus;
   return model.adapts ? kCPrime : kC;
+}
+
+bool adds_nothing(const SessionRecording& recorded, const SessionTrial& trial, std::uint32_t rig) {
+  const auto* control = in_force(recorded, trial.trial.start_tick, rig).control;
+  if (control == nullptr) return false;
+  const cancellation::ControlModel model = cancellation::from_idl(*control);
+  if (!is_identified(recorded, model)) return false;
+  const cancellation::ValueMap& map = model.inputs[0].map;
+  return map.values == std::vector<double>{map.low, map.high};
 }
 
 std::string other_model_in(const SessionRecording& recorded, const SessionTrial& trial,

@@ -19,6 +19,11 @@ namespace stillhand::study {
 std::optional<Condition> condition_in(const session::SessionRecording& recorded,
                                       const measurement::SessionTrial& trial, std::uint32_t rig);
 
+/// Whether a trial of C+ ran the identified model behind a straight line: the diagnosis of its
+/// session left nothing to add (experiment, `control_model: diagnosed`).
+bool adds_nothing(const session::SessionRecording& recorded, const measurement::SessionTrial& trial,
+                  std::uint32_t rig);
+
 /// Why a trial with cancellation was not what its condition says: the motor ran another model than
 /// the one in force in more than 1 % of the recorded commands, for example because the canceller
 /// had refused it.  A recording without commands is judged by the canceller's last answer before

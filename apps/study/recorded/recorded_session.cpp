@@ -202,6 +202,9 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
         out.identify_s = static_cast<double>(trial.trial.duration_ticks) * kControlPeriod_s;
         out.pegged.push_back({file.participant, file.session, trial.trial.number});
       } else {
+        if (condition == kCPlus && adds_nothing(recorded, trial, trials.rig)) {
+          out.plus_adds_nothing = true;
+        }
         (practised ? out.practice : out.trials)
             .push_back({file.participant, file.session, trial.trial.number, 0, *condition,
                         tracked_from(recorded, trial, least_share), lost_share(trial), plan.block,

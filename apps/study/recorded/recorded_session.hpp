@@ -21,6 +21,7 @@ struct RecordedSession {
   std::vector<RecordedTrial> practice;  ///< complete practice trials
   std::vector<std::string> left_out;    ///< one line each: trial, and why
   std::set<std::int64_t> other_model;   ///< complete trials that were not what their condition says
+  bool plus_adds_nothing = false;       ///< a trial of C+ ran the identified model
   std::int64_t broken_trials = 0;       ///< tracking trials that were ended early
   bool simulated = false;               ///< the subject: nobody moved a pointer or a real stick
   std::string rig_parts;                ///< which were devices; empty: none

@@ -32,6 +32,12 @@ void read_session_of(const SessionFile& file, double least_share, Person& person
   }
   std::ranges::move(session.pegged, std::back_inserter(source.pegged));
   std::ranges::move(session.left_out, std::back_inserter(source.left_out));
+  if (session.plus_adds_nothing) {
+    source.remarks.push_back(
+        fmt::format("{}, session {}: C+ ran the model of C, since the "
+                    "session's diagnosis found nothing certain to add",
+                    file.participant, file.session));
+  }
   if (!session.rig_parts.empty()) {
     source.remarks.push_back(
         fmt::format("{}, session {}: {}", file.participant, file.session, session.rig_parts));
@@ -120,7 +126,7 @@ void read_recorded(const std::vector<SessionFile>& files,
     refuse_nobody(selection, registered.excluded);
     source.registered = std::move(registered);
   }
-  source.remarks = std::move(selection.remarks);
+  std::ranges::move(selection.remarks, std::back_inserter(source.remarks));
   source.participants = std::move(selection.participants);
   source.used = std::move(selection.used);
   record.results = std::move(selection.results);

@@ -5,6 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
+#include "services/messages/cancellation/codec.hpp"
+
 namespace stillhand::study {
 namespace {
 
@@ -96,6 +100,28 @@ TEST_F(ModelInUseTest, ATrialWithoutCancellationHasNoModelToLack) {
   trial_.letter = 'B';
   EXPECT_EQ(other(), "");
   EXPECT_EQ(condition_in(recorded_, trial_, 0), kB);
+}
+
+TEST_F(ModelInUseTest, CPlusBehindAStraightLineAddsNothing) {
+  recorded_.models[0].control_numerator({-2.0});
+  recorded_.models[0].control_denominator({1.0});
+  cancellation::ControlModel model;
+  model.rate_hz = kControlRateHz;
+  model.denominator = {1.0};
+  model.inputs = {{cancellation::Channel::kAccelY, {-1.0, 1.0, {-1.0, 1.0}}, {-2.0}}};
+  const auto judged = [&] {
+    recorded_.control_models = {cancellation::to_idl(model, 1000)};
+    recorded_.control_models[0].from_tick(500);
+    return std::pair(condition_in(recorded_, trial_, 0).value(),
+                     adds_nothing(recorded_, trial_, 0));
+  };
+  EXPECT_EQ(judged(), std::pair(kCPlus, true));
+  model.inputs[0].map.values = {-1.0, 0.5};
+  EXPECT_EQ(judged(), std::pair(kCPlus, false));
+  model.inputs[0].map = {};
+  EXPECT_EQ(judged(), std::pair(kC, false));
+  model.inputs[0].numerator = {3.0};
+  EXPECT_EQ(judged(), std::pair(kCPlus, false));
 }
 
 TEST_F(ModelInUseTest, ARecordingWithoutModelsIsJudgedByTheCommands) {
