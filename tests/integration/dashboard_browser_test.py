@@ -164,7 +164,8 @@ class SessionTest(BrowserCase):
             lab.wait_for("an acknowledgement", lambda: page.first_alarms_seen(
                 asked_ms, lambda alarms: not raised(alarms)), TRIAL_LIMIT_S)
         except AssertionError as error:
-            raise AssertionError(f"{error}; answer: {page.text('answer')!r}, alarms: {page.text('alarms')!r}") from error
+            shown = {place: page.text(place) for place in ("answer", "alarms")}
+            raise AssertionError(f"{error}; the page: {shown}") from error
         self.assertRegex(page.text("answer"), "Acknowledge: asked at")
 
     def assert_no_force_behind(self, lab, tick, took_ms):

@@ -108,7 +108,7 @@ class LabProcess:
 
     def __init__(self, out, *arguments, domain=None, program=None, headless=True, environment=None,
                  before_start=None, start=(), inventory=None, typed=subprocess.DEVNULL):
-        """start: words before the lab's own; inventory: of the lab's machines, on the domain given; typed: its input."""
+        """start: words before the lab's own; inventory: of its machines, on the domain given; typed: its input."""
         self.out = pathlib.Path(out)  # "": none given
         self.domain = next_domain() if domain is None else domain
         self._shared_memory_before = shared_memory()

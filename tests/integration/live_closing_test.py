@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`stillhand lab --close live` over the bus: the watch finds that the arm stiffened, the pause identifies and diagnoses,
-a person takes C+ on the terminal, and C runs again with it.
+"""`stillhand lab --close live` over the bus: the watch finds that the arm stiffened, the pause identifies and
+diagnoses, a person takes C+ on the terminal, and C runs again with it.
 
 The watch needs twelve blocks of 4 s before it judges (cancellation, CC-20, ST-22): no short trial can show it.
 """

@@ -88,7 +88,8 @@ std::vector<Part> parts_of(const stillhand_msgs::TrialAssignment& message) {
   }
   return parts;
 }
-static_assert(stillhand_msgs::PART_NOTCH == static_cast<std::uint32_t>(PartKind::kNotch));
+static_assert(static_cast<std::uint32_t>(stillhand_msgs::PART_NOTCH) ==
+              static_cast<std::uint32_t>(PartKind::kNotch));
 
 signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message,
                                  const SamplingConfig& sampling) {
