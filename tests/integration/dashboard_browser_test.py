@@ -95,8 +95,8 @@ class SessionTest(BrowserCase):
         self.assert_fits(page, "running")
         self.assert_accessible(page, "running")
         self.assert_everything_is_reached_by_tab(page)
-        self.delayed(page, lab, dashboard)
-        self.acknowledged(lab, page, lambda: page.press("a"))
+        since_ms = self.delayed(page, lab, dashboard)
+        self.acknowledged(lab, page, since_ms, lambda: page.press("a"))
 
         page.click("[data-ask='/session/pause']")  # before the next trial
         page.click("[data-ask='/session/stop']")
@@ -149,15 +149,17 @@ class SessionTest(BrowserCase):
         os.kill(pid, signal.SIGCONT)
         took_ms = self.shows(page, since_ms, named, "the delay")
         print(f"{DELAY_MS} ms of delay in sensing shown {took_ms:.0f} ms after its beginning")
+        return since_ms
 
-    def acknowledged(self, lab, page, acknowledge):
+    def acknowledged(self, lab, page, since_ms, acknowledge):
         """One acknowledgement: the page then shows every alarm of sensing's delay as acknowledged, or none of them.
 
         A miss of the machine's own may raise the alarm again; what the page showed before that counts.
         """
         def raised(alarms):
             return [text for text in alarms if named(text) and "acknowledged" not in text]
-        lab.wait_for("the alarm in the list", lambda: page.first_alarms_seen(0, raised), TRIAL_LIMIT_S)
+        # Not one of before, which was acknowledged: there would be nothing for the key to do yet.
+        lab.wait_for("the alarm in the list", lambda: page.first_alarms_seen(since_ms, raised), TRIAL_LIMIT_S)
         asked_ms = now_ms()
         acknowledge()
         try:
