@@ -254,11 +254,14 @@ void SessionScript::give_model(lab::LiveTrials& trials, const std::string& condi
   cancellation::ControlModel model =
       condition == "C+" ? *augmented_ : cancellation::control_model(trials.model().control);
   if (condition == "C'") model.adapts = close_the_loop::average_hand();
-  settled_s_ = std::max({settled_s_, lab::settled_after_s(model, lab_.config),
-                         augmented_ ? lab::settled_after_s(*augmented_, lab_.config) : 0.0});
+  const double own_s = lab::settled_after_s(model, lab_.config);
+  settled_s_ = std::max(
+      {settled_s_, own_s, augmented_ ? lab::settled_after_s(*augmented_, lab_.config) : 0.0});
   if (const std::string refused = trials.use(model); !refused.empty()) {
     throw std::runtime_error("the canceller refused a model: " + refused);
   }
+  // As long before every condition.
+  trials.rest("rest", settled_s_ - own_s, [] { return false; });
 }
 
 bool SessionScript::run_trial(lab::LiveTrials& trials, std::size_t step,
@@ -268,16 +271,13 @@ bool SessionScript::run_trial(lab::LiveTrials& trials, std::size_t step,
   const auto labels = labels_of(folder_.design().conditions.size(), folder_.assignment(), index_);
   const std::string label = practice ? "" : labels[planned_step.condition];
   for (;;) {
-    // As long before every condition.
-    const double settles_s = practice ? 0.0 : settled_s_;
-    const double rest_s = std::max(first_ ? 0.0 : folder_.design().rest_s, settles_s);
+    const double rest_s = first_ ? 0.0 : folder_.design().rest_s;
     lab::Prompt prompt =
         prompt_of(practice ? lab::PromptKind::kPractice : lab::PromptKind::kTrial, planned_step);
     prompt.wait_s = rest_s + lab::kTrialLead_s +
                     static_cast<double>(planned.trial.ramp_ticks) * kControlPeriod_s;
     trials.show(prompt);
-    if (settles_s > 0.0) trials.rest("rest", settles_s, [] { return false; });
-    if (rest_s > settles_s) trials.rest("rest", rest_s - settles_s, {});
+    if (rest_s > 0.0) trials.rest("rest", rest_s, {});
     first_ = false;
     if (!look(trials)) return false;
     if (progress_.next() != step) return true;  // during the rest, the last trial was asked again

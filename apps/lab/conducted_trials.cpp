@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "apps/lab/control_model.hpp"
 #include "apps/lab/lost_service.hpp"
 #include "services/core/cancellation/part.hpp"
 #include "services/messages/identification/codec.hpp"
@@ -80,6 +81,14 @@ const session::TrialOutcome& ConductedTrials::run_between(const session::Planned
   const std::int64_t number = outcomes_.back().planned.trial.number - between_;
   ++between_;
   return run_as(planned, number);
+}
+
+std::string ConductedTrials::use(const cancellation::ControlModel& model) {
+  std::string refused = conductor_.use(model);
+  if (refused.empty()) {
+    rest("the model settles", settled_after_s(model, options_.config), [] { return false; });
+  }
+  return refused;
 }
 
 void ConductedTrials::say(const std::string& line) {

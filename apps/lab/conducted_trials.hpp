@@ -49,9 +49,7 @@ class ConductedTrials final : public LiveTrials {
   void note(const std::string& text) override { conductor_.note(text); }
   Asked asked() override { return conductor_.asked(); }
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
-  std::string use(const cancellation::ControlModel& model) override {
-    return conductor_.use(model);
-  }
+  std::string use(const cancellation::ControlModel& model) override;
   [[nodiscard]] bool interrupted() const override { return conductor_.interrupted(); }
 
  private:

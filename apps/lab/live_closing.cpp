@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "apps/lab/control_model.hpp"
 #include "apps/lab/pause_diagnosis.hpp"
 #include "apps/lab/typed_line.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -83,19 +82,13 @@ bool LiveClosing::takes(const PauseVerdict& verdict, std::int64_t number) {
 bool LiveClosing::give_plus(std::int64_t number) {
   std::string refused;
   try {
-    const cancellation::ControlModel plus = diagnosed_model(options_);
-    refused = trials_.use(plus);
-    if (refused.empty()) settle(plus);
+    refused = trials_.use(diagnosed_model(options_));
   } catch (const ConfigError& error) {
     refused = error.what();
   }
   if (refused.empty()) return true;
   trials_.say(fmt::format("C+ does not run in trial {}: {}", number, refused));
   return false;
-}
-
-void LiveClosing::settle(const cancellation::ControlModel& model) {
-  trials_.rest("the model settles", settled_after_s(model, options_.config), [] { return false; });
 }
 
 bool LiveClosing::run_again(bool plus) {
@@ -110,7 +103,6 @@ bool LiveClosing::run_again(bool plus) {
   if (const std::string refused = trials_.use(own); !refused.empty()) {
     throw std::runtime_error("the session's own model behind C+: " + refused);
   }
-  settle(own);
   return true;
 }
 

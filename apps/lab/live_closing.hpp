@@ -32,8 +32,6 @@ class LiveClosing {
   /// Gives the canceller C+.  @return false: it goes on with C's model
   [[nodiscard]] bool give_plus(std::int64_t number);
   bool run_again(bool plus);
-  /// Waits until a model that the canceller took acts alone: a trial must not begin with the other.
-  void settle(const cancellation::ControlModel& model);
 
   const LabOptions& options_;
   LiveTrials& trials_;

@@ -46,7 +46,8 @@ class LiveTrials {
   virtual Asked asked() = 0;
   /// The model identified last.
   [[nodiscard]] virtual const identification::FeedthroughModel& model() const = 0;
-  /// Gives the canceller a model.  @return why it was refused, or empty
+  /// Gives the canceller a model and waits until it acts alone (settled_after_s()): a trial must
+  /// not begin with the one before.  @return why it was refused, or empty
   /// @throws std::runtime_error when the canceller does not answer: which model it has is not known
   virtual std::string use(const cancellation::ControlModel& model) = 0;
   [[nodiscard]] virtual bool interrupted() const = 0;

@@ -17,11 +17,6 @@ using report::or_null;
 
 constexpr int kDecimals = 2;
 
-// Of the changes predicted for rigs that were really mended, those whose interval held the real
-// one: RESULTS.md "Mend, cancel or leave", 2026-11-27.
-constexpr int kHeld = 8;
-constexpr int kCompared = 18;
-
 ordered_json mm_json(const Estimate& value) {
   return {{"mean", or_null(value.mean)}, {"interval95", or_null(value.interval95)}};
 }
@@ -65,8 +60,7 @@ ordered_json repair_json(const RepairList& list) {
   ordered_json json{{"effects", ordered_json::array()},
                     {"modelled_mm", or_null(list.modelled_mm)},
                     {"measured_mm", or_null(list.measured_mm)},
-                    {"intervals_of", "the person's model"},
-                    {"intervals_that_held", {{"count", kHeld}, {"of", kCompared}}}};
+                    {"intervals_of", "the person's model"}};
   for (const Worth& each : list.effects) json["effects"].push_back(worth_json(each));
   return json;
 }
@@ -126,9 +120,8 @@ report::Figure repair_figure(const RepairList& list) {
 std::string repair_check(const RepairList& list) {
   return fmt::format(
       "The model that predicts this gives {} mm for C', where {} mm were measured. The intervals "
-      "are those of this model, and too narrow for the rig: of {} changes of simulated rigs that "
-      "were really mended or given C+, {} lay within theirs.",
-      report::number(list.modelled_mm, 1), report::number(list.measured_mm, 1), kCompared, kHeld);
+      "are those of this model, and too narrow for the rig.",
+      report::number(list.modelled_mm, 1), report::number(list.measured_mm, 1));
 }
 
 }  // namespace stillhand::close_the_loop

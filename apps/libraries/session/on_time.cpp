@@ -90,7 +90,7 @@ std::vector<TickForces> forces_of(const SessionRecording& session, const Trial& 
   const auto truth = [&](auto value) {
     return measured(session.rig_truths, trial, value, missing);
   };
-  const auto asked = [&](double AskedForces::* of) {
+  const auto asked = [&](auto of) {
     return measured(
         answers, trial, [of](const Answered& each) { return each.answer.forces.*of; }, missing);
   };

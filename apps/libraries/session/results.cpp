@@ -189,8 +189,8 @@ RateConversionCost conversion_cost(const SessionRecording& session,
   std::int64_t missing = 0;
   const auto truth = measured(
       session.rig_truths, trial, [](const auto& t) { return t.feedthrough_force_n(); }, missing);
-  const auto accel =
-      measured(session.sensed, trial, [](const auto& s) { return s.accel_y_m_s2(); }, missing);
+  const auto accel_y = [](const auto& s) { return s.accel_y_m_s2(); };
+  const auto accel = measured(session.sensed, trial, accel_y, missing);
   const double ratio = kControlRateHz / model.fit.rate_hz;
   // Any message may be in a recording: a rate that is no rate has no cost.
   if (!(ratio >= 1.0 && ratio <= kControlRateHz)) return {NAN, NAN};
@@ -223,9 +223,10 @@ const stillhand_msgs::FeedthroughModel* identified_before(const SessionRecording
 
 SensedMotion sensed_motion(const SessionRecording& session, const Trial& trial) {
   std::int64_t missing = 0;
-  return {measured(
-              session.sensed, trial, [](const auto& s) { return s.accel_y_m_s2(); }, missing),
-          measured(session.sensed, trial, [](const auto& s) { return s.theta_rad(); }, missing)};
+  const auto accel_y = [](const auto& s) { return s.accel_y_m_s2(); };
+  const auto theta = [](const auto& s) { return s.theta_rad(); };
+  return {measured(session.sensed, trial, accel_y, missing),
+          measured(session.sensed, trial, theta, missing)};
 }
 
 void judge_by_senses(const SessionRecording& session, const std::vector<TrialOutcome>& outcomes,

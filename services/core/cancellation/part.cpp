@@ -6,7 +6,7 @@
 namespace stillhand::cancellation {
 namespace {
 
-bool any(const std::vector<Part>& parts, bool PartRow::* fact) {
+bool any(const std::vector<Part>& parts, auto fact) {
   return std::ranges::any_of(parts, [&](const Part& part) {
     const PartRow* const row = row_of(part.kind);
     return row != nullptr && row->*fact;

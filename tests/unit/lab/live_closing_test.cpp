@@ -139,8 +139,6 @@ TEST_F(LiveClosingTest, CPlusThatLeavesLessRunsAndTheSessionsModelComesBack) {
   EXPECT_THAT(trials_.gains, ElementsAre(3.2, -2.0));
   EXPECT_THAT(trials_.said, HasSubstr("C+ taken for trial 3, dead_zone: leaves 0.81 N"));
   EXPECT_EQ(trials_.rested.at("before the identification"), 10.0);
-  // Of both models: notice, one tick for a model without poles, fade.
-  EXPECT_NEAR(trials_.rested.at("the model settles"), 2.0 * (0.250 + 0.001 + 0.250), 1e-9);
 }
 
 TEST_F(LiveClosingTest, WhatIsNotCertainIsNotTakenWithoutAPerson) {
