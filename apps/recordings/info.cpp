@@ -7,7 +7,7 @@
 
 #include "idl/topics.hpp"
 #include "services/core/recording/mcap/compression.hpp"
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 
 namespace stillhand::recordings {
 namespace {

@@ -12,7 +12,7 @@
 #include "idl/control_loop.h"
 #include "services/core/contract/flag.hpp"
 #include "services/core/recording/mcap/mcap_reader.hpp"
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 #include "services/files/recording/file_io.hpp"
 
 namespace {

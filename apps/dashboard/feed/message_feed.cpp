@@ -11,7 +11,7 @@
 #include "services/core/contract/time_difference.hpp"
 #include "services/core/contract/units.hpp"
 #include "services/core/device_rig/parts_note.hpp"
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 
 namespace stillhand::dashboard {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 
 namespace stillhand::dashboard {
 

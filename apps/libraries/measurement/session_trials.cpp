@@ -14,7 +14,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/device_rig/parts_note.hpp"
 #include "services/core/recording/experiment_record.hpp"
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 #include "services/messages/recording/named_writers.hpp"
 
 namespace stillhand::measurement {

@@ -5,7 +5,7 @@
 
 #include "idl/topics.hpp"
 #include "services/bus/recording/qos_texts.hpp"
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 
 namespace stillhand::recording {
 

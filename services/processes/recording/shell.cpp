@@ -7,7 +7,7 @@
 
 #include "idl/session_state.hpp"
 #include "services/bus/recording/session_texts.hpp"
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 #include "services/system/process/log_clock.hpp"
 
 namespace stillhand::recording {

@@ -11,7 +11,7 @@
 #include "idl/topics.hpp"
 #include "services/bus/recording/trial_log.hpp"
 #include "services/core/recording/mcap/mcap_reader.hpp"
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/session_file.hpp"
 

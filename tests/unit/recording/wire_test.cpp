@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/recording/messages/wire.hpp"
+#include "services/core/recording/mcap/wire.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "services/core/contract/config_error.hpp"
-#include "services/core/recording/messages/wire.hpp"
+#include "services/core/recording/mcap/wire.hpp"
 
 namespace stillhand::measurement::tdms {
 namespace {

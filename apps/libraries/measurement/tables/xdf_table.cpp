@@ -15,7 +15,7 @@
 
 #include "apps/libraries/measurement/tables/at_times.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/core/recording/messages/wire.hpp"
+#include "services/core/recording/mcap/wire.hpp"
 #include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::measurement {

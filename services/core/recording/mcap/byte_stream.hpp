@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "services/core/recording/status.hpp"
+#include "services/core/recording/mcap/status.hpp"
 
 namespace stillhand::recording {
 

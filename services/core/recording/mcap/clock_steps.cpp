@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "services/core/contract/time_difference.hpp"
-#include "services/core/recording/sample_clock.hpp"
+#include "services/core/recording/mcap/sample_clock.hpp"
 
 namespace stillhand::recording {
 namespace {

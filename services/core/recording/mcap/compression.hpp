@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "services/core/recording/mcap/mcap_format.hpp"
-#include "services/core/recording/status.hpp"
+#include "services/core/recording/mcap/status.hpp"
 
 namespace stillhand::recording {
 

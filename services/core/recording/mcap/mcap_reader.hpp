@@ -13,7 +13,7 @@
 #include "services/core/recording/mcap/clock_steps.hpp"
 #include "services/core/recording/mcap/mcap_damage.hpp"
 #include "services/core/recording/mcap/mcap_format.hpp"
-#include "services/core/recording/source_window.hpp"
+#include "services/core/recording/mcap/source_window.hpp"
 
 namespace stillhand::recording {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "services/core/recording/mcap/mcap_format.hpp"
-#include "services/core/recording/messages/wire.hpp"
+#include "services/core/recording/mcap/wire.hpp"
 
 namespace stillhand::recording {
 

@@ -10,7 +10,7 @@ namespace stillhand::recording {
 namespace {
 
 constexpr std::int64_t kMaxLength = UINT32_MAX;
-constexpr int kMaxDepth = 64;  // of brackets
+constexpr int kMaxBrackets = 64;
 
 class Number {
  public:
@@ -40,7 +40,7 @@ class Number {
     return value;
   }
   std::int64_t factor(int depth) {
-    if (depth > kMaxDepth) in_.refuse("fewer nested brackets");
+    if (depth > kMaxBrackets) in_.refuse("fewer nested brackets");
     if (in_.accept("-")) return -factor(depth + 1);
     if (in_.accept("(")) {
       const std::int64_t value = sum(depth + 1);

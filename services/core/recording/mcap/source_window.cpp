@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/recording/source_window.hpp"
+#include "services/core/recording/mcap/source_window.hpp"
 
 #include <algorithm>
 

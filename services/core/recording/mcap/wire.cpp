@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/recording/messages/wire.hpp"
+#include "services/core/recording/mcap/wire.hpp"
 
 namespace stillhand::recording {
 
