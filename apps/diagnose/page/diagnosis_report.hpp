@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/diagnose/lateness.hpp"
+#include "apps/diagnose/page/lateness.hpp"
 #include "apps/libraries/report/page.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
 #include "services/core/diagnosis/diagnose.hpp"

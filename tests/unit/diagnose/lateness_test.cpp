@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The split ahead of the verdict, of a recording whose stalls are known.
-#include "apps/diagnose/lateness.hpp"
+#include "apps/diagnose/page/lateness.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/diagnose/lateness.hpp"
+#include "apps/diagnose/page/lateness.hpp"
 
 #include <fmt/format.h>
 
