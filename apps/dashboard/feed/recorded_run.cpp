@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-#include "apps/dashboard/view/words.hpp"
+#include "apps/dashboard/feed/words.hpp"
 #include "services/bus/trial_codec.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/time_difference.hpp"

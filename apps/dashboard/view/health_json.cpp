@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/dashboard/view/words.hpp"
+#include "apps/dashboard/feed/words.hpp"
 
 namespace stillhand::dashboard {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/dashboard/feed/words.hpp"
 #include "apps/dashboard/view/health_json.hpp"
 #include "apps/dashboard/view/processes_json.hpp"
 #include "apps/dashboard/view/view_json.hpp"
-#include "apps/dashboard/view/words.hpp"
 #include "services/bus/trial_codec.hpp"
 
 namespace stillhand::dashboard {

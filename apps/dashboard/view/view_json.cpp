@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "apps/dashboard/core/residual_spectrum.hpp"
-#include "apps/dashboard/view/words.hpp"
+#include "apps/dashboard/feed/words.hpp"
 #include "services/core/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/dashboard/view/words.hpp"
+#include "apps/dashboard/feed/words.hpp"
 
 #include <gtest/gtest.h>
 
