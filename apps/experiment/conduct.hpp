@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/experiment/folder.hpp"
+#include "apps/experiment/folder/folder.hpp"
 #include "apps/lab/lab_options.hpp"
 #include "services/system/process/stop.hpp"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "apps/experiment/folder.hpp"
+#include "apps/experiment/folder/folder.hpp"
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/study/plan_options.hpp"
 #include "apps/study/study_runs.hpp"

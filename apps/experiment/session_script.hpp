@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/experiment/folder.hpp"
+#include "apps/experiment/folder/folder.hpp"
 #include "apps/lab/lab_options.hpp"
 #include "apps/lab/live_trials.hpp"
 #include "services/core/cancellation/control_model.hpp"

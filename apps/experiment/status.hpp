@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/experiment/folder.hpp"
+#include "apps/experiment/folder/folder.hpp"
 
 namespace stillhand::experiment {
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "apps/experiment/sealed_assignment.hpp"
+#include "apps/experiment/folder/sealed_assignment.hpp"
 #include "apps/libraries/experiment/file/standing.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/experiment/sealed_assignment.hpp"
+#include "apps/experiment/folder/sealed_assignment.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "apps/libraries/experiment/file/journal.hpp"
 #include "services/core/contract/config_error.hpp"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "apps/experiment/sealed_assignment.hpp"
+#include "apps/experiment/folder/sealed_assignment.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "apps/libraries/experiment/file/journal.hpp"
 #include "idl/model.h"

@@ -25,7 +25,7 @@
 #include <utility>
 
 #include "apps/close_the_loop/control_model.hpp"
-#include "apps/experiment/folder.hpp"
+#include "apps/experiment/folder/folder.hpp"
 #include "apps/libraries/session/in_process.hpp"
 #include "apps/study/trial_analysis.hpp"
 #include "idl/idl_text.hpp"

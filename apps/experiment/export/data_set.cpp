@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "apps/experiment/sealed_assignment.hpp"
+#include "apps/experiment/folder/sealed_assignment.hpp"
 #include "apps/libraries/measurement/session.hpp"
 #include "apps/libraries/measurement/session_trials.hpp"
 #include "apps/study/recorded/recorded_session.hpp"

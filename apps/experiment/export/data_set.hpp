@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/experiment/folder.hpp"
+#include "apps/experiment/folder/folder.hpp"
 #include "services/core/contract/trial.hpp"
 #include "services/core/identification/tracking_metrics.hpp"
 #include "services/core/recording/recording.hpp"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "apps/experiment/export/bids_texts.hpp"
-#include "apps/experiment/sealed_assignment.hpp"
+#include "apps/experiment/folder/sealed_assignment.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/experiment/folder.hpp"
+#include "apps/experiment/folder/folder.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "apps/experiment/sealed_assignment.hpp"
+#include "apps/experiment/folder/sealed_assignment.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "services/bus/recording/of_experiment.hpp"
 #include "services/core/contract/config_error.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/experiment/sealed_assignment.hpp"
+#include "apps/experiment/folder/sealed_assignment.hpp"
 
 #include <fmt/format.h>
 
