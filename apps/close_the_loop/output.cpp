@@ -10,7 +10,7 @@
 #include "apps/close_the_loop/repair/repair_output.hpp"
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/report/plot/figure_table.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/force_budget_json.hpp"
 #include "apps/libraries/session/numbers_json.hpp"
 #include "services/files/rig/sealed_file.hpp"

@@ -4,7 +4,7 @@
 #include "apps/close_the_loop/repair/repair_output.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/provenance.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "apps/close_the_loop/output.hpp"
 #include "apps/close_the_loop/repair/repair_output.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::close_the_loop {
 void print_result(const LoopRecord& record) {

@@ -14,7 +14,7 @@
 #include "apps/compare/findings.hpp"
 #include "apps/compare/summary_file.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
 

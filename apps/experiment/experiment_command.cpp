@@ -19,7 +19,7 @@
 #include "apps/experiment/unblind.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "apps/libraries/report/command_line.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/instructions.hpp"
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/contract/config_error.hpp"

@@ -11,7 +11,7 @@
 #include "apps/lab/summary_json.hpp"
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/provenance.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/core/trial_numbers.hpp"
 #include "apps/libraries/session/force_budget_table.hpp"
 

@@ -11,7 +11,7 @@
 #include "apps/lab/session_figure.hpp"
 #include "apps/lab/session_page.hpp"
 #include "apps/lab/summary_json.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/device_rig/parts.hpp"
 #include "services/files/identification/model_file.hpp"
 #include "services/files/recording/file_io.hpp"

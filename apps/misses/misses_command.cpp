@@ -15,7 +15,7 @@
 
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/clock_line.hpp"
 #include "apps/libraries/session/misses.hpp"
 #include "apps/libraries/session/misses_json.hpp"

@@ -11,7 +11,7 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/predict/judgement.hpp"
 #include "apps/predict/predict.hpp"
 #include "services/core/contract/config_error.hpp"

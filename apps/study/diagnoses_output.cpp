@@ -7,7 +7,7 @@
 
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/or_null.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/csv_cells.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/participants.hpp"

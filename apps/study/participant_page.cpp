@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/diagnoses_output.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/participants.hpp"

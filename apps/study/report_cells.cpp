@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::study {
 

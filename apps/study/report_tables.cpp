@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/report_cells.hpp"
 #include "apps/study/report_sections.hpp"
 #include "services/core/statistics/power.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "apps/libraries/report/provenance.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/diagnoses_output.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/participants.hpp"

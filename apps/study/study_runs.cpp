@@ -11,7 +11,7 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/recorded/find_sessions.hpp"
 #include "apps/study/recorded/recorded_subjects.hpp"
 #include "apps/study/study.hpp"

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/libraries/report/provenance.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::vehicle {

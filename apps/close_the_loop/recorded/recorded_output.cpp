@@ -10,7 +10,7 @@
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/report/provenance.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "version.hpp"
 
 namespace stillhand::close_the_loop {

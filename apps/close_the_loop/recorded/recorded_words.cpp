@@ -7,7 +7,7 @@
 
 #include "apps/close_the_loop/output.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -13,7 +13,7 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/plot/figure_table.hpp"
 #include "apps/libraries/report/provenance.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/diagnose/page/figures.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/excerpt.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::diagnose {
 namespace {

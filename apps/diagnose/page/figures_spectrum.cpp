@@ -6,7 +6,7 @@
 
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::diagnose {

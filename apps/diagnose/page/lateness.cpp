@@ -6,7 +6,7 @@
 #include "apps/libraries/measurement/session_trials.hpp"
 #include "apps/libraries/measurement/tables/bag_table.hpp"
 #include "apps/libraries/measurement/tables/table_file.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/answer_settings.hpp"
 #include "apps/libraries/session/force_budget_json.hpp"
 #include "apps/libraries/session/force_budget_table.hpp"

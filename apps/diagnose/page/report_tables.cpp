@@ -10,7 +10,7 @@
 #include "apps/diagnose/page/effect_numbers.hpp"
 #include "apps/diagnose/page/questions.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {

@@ -8,7 +8,7 @@
 
 #include "apps/libraries/report/page_style.hpp"
 #include "apps/libraries/report/plot/svg.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/expects.hpp"
 #include "services/files/recording/file_io.hpp"
 

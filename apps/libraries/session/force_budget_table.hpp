@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apps/libraries/report/page.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/force_budget.hpp"
 
 namespace stillhand::session {

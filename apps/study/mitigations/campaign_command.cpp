@@ -3,7 +3,7 @@
 
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/mitigations/campaign_output.hpp"
 #include "services/system/process/stop.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "apps/libraries/report/provenance.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/mitigations/campaign_output.hpp"
 
 namespace stillhand::study {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "apps/libraries/report/plot/panel_layout.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::report {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::report {
 namespace {

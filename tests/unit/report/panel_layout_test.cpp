@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::report {
 namespace {

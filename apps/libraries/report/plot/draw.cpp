@@ -11,7 +11,7 @@
 #include "apps/libraries/report/plot/gnuplot_script.hpp"
 #include "apps/libraries/report/plot/panel_layout.hpp"
 #include "apps/libraries/report/plot/svg.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/expects.hpp"
 #include "services/files/recording/file_io.hpp"
 

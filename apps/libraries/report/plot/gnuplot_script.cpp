@@ -9,7 +9,7 @@
 #include "apps/libraries/report/plot/palette.hpp"
 #include "apps/libraries/report/plot/panel_layout.hpp"
 #include "apps/libraries/report/plot/series_script.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/expects.hpp"
 
 namespace stillhand::report {

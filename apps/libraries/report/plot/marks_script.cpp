@@ -7,7 +7,7 @@
 
 #include "apps/libraries/report/plot/palette.hpp"
 #include "apps/libraries/report/plot/series_script.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::report {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "apps/libraries/report/plot/legend_layout.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::report {
 namespace {

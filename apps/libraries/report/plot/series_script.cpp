@@ -5,7 +5,7 @@
 
 #include "apps/libraries/report/plot/palette.hpp"
 #include "apps/libraries/report/plot/thinning.hpp"
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/expects.hpp"
 
 namespace stillhand::report {

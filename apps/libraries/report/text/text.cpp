@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/libraries/report/text.hpp"
+#include "apps/libraries/report/text/text.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
