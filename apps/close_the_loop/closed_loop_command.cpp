@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "apps/close_the_loop/live_session.hpp"
 #include "apps/close_the_loop/output.hpp"
-#include "apps/close_the_loop/recorded/recorded_command.hpp"
-#include "apps/close_the_loop/repeats.hpp"
+#include "apps/close_the_loop/recorded_command.hpp"
+#include "apps/close_the_loop/session/live_session.hpp"
+#include "apps/close_the_loop/session/repeats.hpp"
 #include "apps/diagnose/diagnose_options.hpp"
 #include "apps/lab/lab.hpp"
 #include "apps/lab/undeclared_effect.hpp"

@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/close_the_loop/control_model.hpp"
-#include "apps/close_the_loop/drive.hpp"
 #include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
+#include "apps/close_the_loop/verdict/drive.hpp"
 #include "apps/lab/lab_options.hpp"
 #include "apps/libraries/measurement/read_options.hpp"
 #include "apps/libraries/report/command_line.hpp"

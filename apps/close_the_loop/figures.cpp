@@ -5,7 +5,7 @@
 #include <ranges>
 
 #include "apps/close_the_loop/output.hpp"
-#include "apps/close_the_loop/repair/repair_output.hpp"
+#include "apps/close_the_loop/repair_output.hpp"
 #include "apps/libraries/measurement/grid.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/working_set.hpp"
@@ -114,8 +114,7 @@ class Excerpt {
 report::Figure force_figure(const LoopRecord& record) {
   const Verdict& verdict = record.result.verdict();
   const diagnosis::Signals signals(
-      diagnosis::working_set(measurement::on_grid(record.result.trial("I").measured, 60'000'000),
-                             {"a_y"}),
+      diagnosis::working_set(measurement::on_grid(record.result.trial("I").measured), {"a_y"}),
       {"a_y"}, "f");
   const auto run = [&](const diagnosis::Model& model) {
     return diagnosis::free_run(model, signals).prediction;

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "apps/close_the_loop/repair/repair_output.hpp"
+#include "apps/close_the_loop/repair_output.hpp"
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/report/plot/figure_table.hpp"
 #include "apps/libraries/report/text/text.hpp"

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "apps/close_the_loop/closed_loop.hpp"
-#include "apps/close_the_loop/conditions.hpp"
 #include "apps/close_the_loop/repair/repair.hpp"
+#include "apps/close_the_loop/session/closed_loop.hpp"
+#include "apps/close_the_loop/session/conditions.hpp"
 #include "apps/libraries/report/page.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The report: what the paper's model lacked, and how the hand tracks with each model.
 #include "apps/close_the_loop/output.hpp"
-#include "apps/close_the_loop/repair/repair_output.hpp"
+#include "apps/close_the_loop/repair_output.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text/text.hpp"

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "apps/close_the_loop/output.hpp"
-#include "apps/close_the_loop/repair/repair_output.hpp"
+#include "apps/close_the_loop/repair_output.hpp"
 #include "apps/libraries/report/text/text.hpp"
 
 namespace stillhand::close_the_loop {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 #include "apps/lab/control_model.hpp"
 #include "apps/lab/pause_diagnosis.hpp"
 #include "apps/libraries/measurement/written_trial.hpp"

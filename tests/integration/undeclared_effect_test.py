@@ -22,8 +22,8 @@ SECRET = re.compile(r"stillhand::rig::(UndeclaredEffect|SealedEffect|EffectOnCha
 SEALED_HEADERS = re.compile(r'#include "services/(core/rig/undeclared/\w+|files/rig/sealed_file)\.hpp"')
 # The programs that step the rig in one process, and those that write the sealed file.
 MAY_INCLUDE = ("services/core/rig/", "services/files/rig/", "services/processes/rig/", "apps/libraries/session/",
-               "apps/lab/", "apps/study/", "apps/close_the_loop/session.", "apps/close_the_loop/closed_loop_command.",
-               "apps/close_the_loop/output.", "tests/")
+               "apps/lab/", "apps/study/", "apps/close_the_loop/session/session.",
+               "apps/close_the_loop/closed_loop_command.", "apps/close_the_loop/output.", "tests/")
 RECORDED_WITHOUT = BUILD / "tests" / "lab_run" / "session.mcap"  # ctest's fixture lab_run
 SESSION_LIMIT_S = 120
 

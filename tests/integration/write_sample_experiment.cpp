@@ -24,7 +24,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 #include "apps/experiment/folder/folder.hpp"
 #include "apps/libraries/session/in_process.hpp"
 #include "apps/study/trial_analysis.hpp"

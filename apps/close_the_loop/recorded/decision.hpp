@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/close_the_loop/gain.hpp"
 #include "apps/close_the_loop/recorded/replay.hpp"
+#include "apps/close_the_loop/verdict/gain.hpp"
 
 namespace stillhand::close_the_loop {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/close_the_loop/recorded/decision.hpp"
-#include "apps/close_the_loop/verdict.hpp"
+#include "apps/close_the_loop/verdict/verdict.hpp"
 #include "apps/libraries/measurement/read.hpp"
 
 namespace stillhand::close_the_loop {

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
-#include "apps/close_the_loop/control_laws.hpp"
 #include "apps/close_the_loop/recorded/replay.hpp"
+#include "apps/close_the_loop/verdict/control_laws.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 #include "apps/libraries/measurement/grid.hpp"
 #include "services/core/contract/units.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 
@@ -18,8 +21,6 @@ namespace {
 namespace control = diagnosis::control;
 using diagnosis::Effect;
 using diagnosis::Model;
-
-constexpr std::size_t kMostValues = 60'000'000;
 
 template <typename Law>
 bool is_body(const Effect& effect) {
@@ -76,9 +77,7 @@ RecordedTrial recorded_trial(diagnosis::Measurement record, const Model& model) 
   return {std::move(record), std::move(signals)};
 }
 
-diagnosis::Measurement record_of(const TrialRun& run) {
-  return measurement::on_grid(run.measured, kMostValues);
-}
+diagnosis::Measurement record_of(const TrialRun& run) { return measurement::on_grid(run.measured); }
 
 std::vector<double> at_1_khz(const std::vector<double>& values, const RecordedTrial& trial) {
   return at_control_rate(values, longest(trial.signals.stretches()), trial.signals.rate_hz());

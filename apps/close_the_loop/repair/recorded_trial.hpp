@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/close_the_loop/repair/person_loop.hpp"
-#include "apps/close_the_loop/session.hpp"
+#include "apps/close_the_loop/session/session.hpp"
 #include "services/core/cancellation/parts/adaptive_gain.hpp"
 #include "services/core/diagnosis/model/model.hpp"
 #include "services/core/diagnosis/signals.hpp"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 
-#include "apps/close_the_loop/control_laws.hpp"
 #include "apps/close_the_loop/recorded/replay.hpp"
 #include "apps/close_the_loop/repair/recorded_trial.hpp"
+#include "apps/close_the_loop/verdict/control_laws.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/human_operator/fast_error.hpp"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/close_the_loop/closed_loop.hpp"
-#include "apps/close_the_loop/conditions.hpp"
 #include "apps/close_the_loop/repair/person_loop.hpp"
+#include "apps/close_the_loop/session/closed_loop.hpp"
+#include "apps/close_the_loop/session/conditions.hpp"
 
 namespace stillhand::close_the_loop {
 

@@ -10,6 +10,8 @@ namespace stillhand::measurement {
 
 /// Least number of measured samples of a measurement [-].
 inline constexpr std::size_t kLeastSamples = 50;
+/// Most samples times channels [-], unless a caller says otherwise: 8 B each, 480 MB.
+inline constexpr std::size_t kMostValues = 60'000'000;
 
 /// Puts the rows of a recording on a uniform grid, README Eqs. ME-1 to ME-4.  Short gaps are filled
 /// in with weight 0, long gaps separate stretches, very short stretches are left out, and jittered
@@ -18,6 +20,6 @@ inline constexpr std::size_t kLeastSamples = 50;
 /// @param rows  as parse_csv() returns them, with at least one column
 /// @param most_values  [-] samples times channels of the result at most
 /// @throws stillhand::ConfigError when too few or too many values are left.
-diagnosis::Measurement on_grid(recording::Recording rows, std::size_t most_values);
+diagnosis::Measurement on_grid(recording::Recording rows, std::size_t most_values = kMostValues);
 
 }  // namespace stillhand::measurement

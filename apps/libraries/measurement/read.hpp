@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/libraries/measurement/grid.hpp"
 #include "apps/libraries/measurement/sample_screen.hpp"
 #include "apps/libraries/measurement/tables/mapping.hpp"
 #include "apps/libraries/measurement/tables/table_file.hpp"
@@ -24,7 +25,7 @@ struct ReadOptions {
   /// The channels of lateness of a session too (apps/libraries/session/README.md).
   bool lateness = false;
   /// [-] samples times channels that are read at most; 8 B each, and as much again while reading.
-  std::size_t most_values = 60'000'000;
+  std::size_t most_values = kMostValues;
   ModelChannels channels = {};  ///< that the screening judges as the model's
   /// Columns, sample rate and signs of a file of another program,
   /// RECORDINGS_OF_OTHER_PROGRAMS.md.  If it is empty, the titles state the columns.

@@ -183,11 +183,11 @@ bool has_many_levels(const std::vector<double>& values) {
 
 std::vector<BadRows> far_values(const std::vector<double>& values) {
   // A file has one fill value and a rail at either end; a few more do no harm.
-  constexpr std::size_t kMostValues = 8;
+  constexpr std::size_t kMostFar = 8;
   std::vector<BadRows> out;
   if (ends_are_near(values)) return out;
   std::vector<char> is_bad(values.size(), 0);
-  while (out.size() < kMostValues) {
+  while (out.size() < kMostFar) {
     const Ends ends = ends_of(values, is_bad);
     const double inner = ends.below_high - ends.above_low;
     const std::size_t most = values.size() / 2;

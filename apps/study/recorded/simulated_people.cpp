@@ -9,7 +9,7 @@
 #include <exception>
 #include <utility>
 
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 #include "apps/libraries/experiment/core/plan.hpp"
 #include "apps/study/recorded/average.hpp"
 #include "apps/study/trial_analysis.hpp"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The order of the loop's trials and its ends, with a session that runs nothing.
-#include "apps/close_the_loop/closed_loop.hpp"
+#include "apps/close_the_loop/session/closed_loop.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "apps/close_the_loop/session.hpp"
+#include "apps/close_the_loop/session/session.hpp"
 #include "services/core/contract/config_error.hpp"
 
 namespace stillhand::close_the_loop {

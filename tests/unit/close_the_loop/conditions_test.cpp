@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Means, paired differences and shares over the repeats, from numbers that are made up.
-#include "apps/close_the_loop/conditions.hpp"
+#include "apps/close_the_loop/session/conditions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/control_laws.hpp"
+#include "apps/close_the_loop/verdict/control_laws.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A diagnosed model at the canceller's rate, Eq. CL-1 to CL-4: the same force from the same motion.
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Linear parts at the control rate, Eq. CL-1 and CL-2, against responses that are written out.
-#include "apps/close_the_loop/control_response.hpp"
+#include "apps/close_the_loop/verdict/control_response.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/drive_effects.hpp"
+#include "apps/close_the_loop/verdict/drive_effects.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stick's own equation, Eq. CL-5, on a stick that is moved by a known force.
-#include "apps/close_the_loop/drive.hpp"
+#include "apps/close_the_loop/verdict/drive.hpp"
 
 #include <gtest/gtest.h>
 

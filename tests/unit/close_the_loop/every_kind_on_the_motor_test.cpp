@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <string_view>
 
-#include "apps/close_the_loop/control_check.hpp"
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_check.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 #include "services/core/cancellation/parts/countermeasure.hpp"
 #include "services/core/contract/units.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"

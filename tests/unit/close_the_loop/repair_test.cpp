@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/close_the_loop/repair/repair_output.hpp"
+#include "apps/close_the_loop/repair_output.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
 #include "services/core/contract/units.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Repeats of short trials: what they share, and that threads change nothing.
-#include "apps/close_the_loop/repeats.hpp"
+#include "apps/close_the_loop/session/repeats.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verdict of the loop is that of `stillhand diagnose`, and an effect counts by its newtons.
-#include "apps/close_the_loop/verdict.hpp"
+#include "apps/close_the_loop/verdict/verdict.hpp"
 
 #include <gtest/gtest.h>
 

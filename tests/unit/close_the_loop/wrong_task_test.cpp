@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apps/close_the_loop/control_model.hpp"
-#include "apps/close_the_loop/session.hpp"
+#include "apps/close_the_loop/session/session.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 #include "services/core/contract/tick.hpp"
 
 namespace stillhand::close_the_loop {

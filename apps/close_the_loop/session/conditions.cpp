@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/conditions.hpp"
+#include "apps/close_the_loop/session/conditions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "apps/close_the_loop/gain.hpp"
+#include "apps/close_the_loop/verdict/gain.hpp"
 #include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::close_the_loop {

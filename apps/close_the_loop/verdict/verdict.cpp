@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/verdict.hpp"
+#include "apps/close_the_loop/verdict/verdict.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "apps/close_the_loop/drive_effects.hpp"
+#include "apps/close_the_loop/verdict/drive_effects.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/effects/kinds.hpp"

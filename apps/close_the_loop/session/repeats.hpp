@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "apps/close_the_loop/conditions.hpp"
-#include "apps/close_the_loop/session.hpp"
+#include "apps/close_the_loop/session/conditions.hpp"
+#include "apps/close_the_loop/session/session.hpp"
 
 namespace stillhand::close_the_loop {
 

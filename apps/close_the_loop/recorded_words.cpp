@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/recorded/recorded_words.hpp"
+#include "apps/close_the_loop/recorded_words.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/closed_loop.hpp"
+#include "apps/close_the_loop/session/closed_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,6 @@ namespace stillhand::close_the_loop {
 namespace {
 
 using cancellation::ControlModel;
-
-constexpr std::size_t kMostValues = 60'000'000;
 
 class Loop {
  public:
@@ -146,8 +144,7 @@ bool Loop::round() {
   diagnose.progress = [&](const std::string& what) {
     return options_.progress("diagnosis: " + what);
   };
-  const diagnosis::Measurement pegged =
-      measurement::on_grid(result_.trial("I").measured, kMostValues);
+  const diagnosis::Measurement pegged = measurement::on_grid(result_.trial("I").measured);
   Evidence evidence;
   evidence.pegged = &pegged;
   evidence.moving = {&result_.trial("B").measured};

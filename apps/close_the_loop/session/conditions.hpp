@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/close_the_loop/closed_loop.hpp"
+#include "apps/close_the_loop/session/closed_loop.hpp"
 #include "apps/libraries/session/core/trial_numbers.hpp"
 
 namespace stillhand::close_the_loop {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/control_response.hpp"
+#include "apps/close_the_loop/verdict/control_response.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "apps/close_the_loop/control_laws.hpp"
+#include "apps/close_the_loop/verdict/control_laws.hpp"
 #include "services/core/cancellation/control_model_filter.hpp"
 #include "services/core/cancellation/model_check.hpp"
 #include "services/core/contract/config_error.hpp"

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "apps/close_the_loop/closed_loop.hpp"
-#include "apps/close_the_loop/session.hpp"
+#include "apps/close_the_loop/session/closed_loop.hpp"
+#include "apps/close_the_loop/session/session.hpp"
 #include "apps/lab/lab.hpp"
 
 namespace stillhand::close_the_loop {

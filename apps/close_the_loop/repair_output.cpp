@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/repair/repair_output.hpp"
+#include "apps/close_the_loop/repair_output.hpp"
 
 #include <fmt/format.h>
 

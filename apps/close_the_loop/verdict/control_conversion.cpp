@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/control_conversion.hpp"
+#include "apps/close_the_loop/verdict/control_conversion.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "apps/close_the_loop/control_laws.hpp"
-#include "apps/close_the_loop/control_response.hpp"
+#include "apps/close_the_loop/verdict/control_laws.hpp"
+#include "apps/close_the_loop/verdict/control_response.hpp"
 #include "services/core/cancellation/model_check.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 #include "services/core/diagnosis/model/effect.hpp"
 
 namespace stillhand::close_the_loop {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/control_check.hpp"
+#include "apps/close_the_loop/verdict/control_check.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <span>
 
-#include "apps/close_the_loop/control_conversion.hpp"
+#include "apps/close_the_loop/verdict/control_conversion.hpp"
 #include "services/core/cancellation/control_model_filter.hpp"
 #include "services/core/cancellation/model_check.hpp"
 #include "services/core/contract/tick.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "apps/close_the_loop/control_check.hpp"
-#include "apps/close_the_loop/control_conversion.hpp"
-#include "apps/close_the_loop/control_response.hpp"
+#include "apps/close_the_loop/verdict/control_check.hpp"
+#include "apps/close_the_loop/verdict/control_conversion.hpp"
+#include "apps/close_the_loop/verdict/control_response.hpp"
 #include "services/core/cancellation/model_check.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/drive.hpp"
+#include "apps/close_the_loop/verdict/drive.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/close_the_loop/control_model.hpp"
-#include "apps/close_the_loop/drive.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
+#include "apps/close_the_loop/verdict/drive.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
 #include "services/core/recording/recording.hpp"
 

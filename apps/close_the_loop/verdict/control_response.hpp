@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 #include "services/core/diagnosis/model/model.hpp"
 
 /// A diagnosed model's linear parts at the control rate, METHOD Eq. CL-1 and CL-2.

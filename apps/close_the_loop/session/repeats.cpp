@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/repeats.hpp"
+#include "apps/close_the_loop/session/repeats.hpp"
 
 #include <algorithm>
 #include <string>

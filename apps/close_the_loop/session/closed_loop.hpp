@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/close_the_loop/session.hpp"
-#include "apps/close_the_loop/verdict.hpp"
+#include "apps/close_the_loop/session/session.hpp"
+#include "apps/close_the_loop/verdict/verdict.hpp"
 #include "apps/libraries/session/protocol.hpp"
 
 namespace stillhand::close_the_loop {

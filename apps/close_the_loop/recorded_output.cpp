@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/recorded/recorded_output.hpp"
+#include "apps/close_the_loop/recorded_output.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include "apps/close_the_loop/output.hpp"
-#include "apps/close_the_loop/recorded/recorded_words.hpp"
+#include "apps/close_the_loop/recorded_words.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/or_null.hpp"
 #include "apps/libraries/report/provenance.hpp"

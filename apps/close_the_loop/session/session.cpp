@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/session.hpp"
+#include "apps/close_the_loop/session/session.hpp"
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/signal/reference.hpp"

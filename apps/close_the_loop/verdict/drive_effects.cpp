@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/drive_effects.hpp"
+#include "apps/close_the_loop/verdict/drive_effects.hpp"
 
-#include "apps/close_the_loop/control_laws.hpp"
+#include "apps/close_the_loop/verdict/control_laws.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 
 namespace stillhand::close_the_loop {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/live_session.hpp"
+#include "apps/close_the_loop/session/live_session.hpp"
 
 #include <algorithm>
 #include <cmath>

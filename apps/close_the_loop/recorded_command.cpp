@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/close_the_loop/recorded/recorded_command.hpp"
+#include "apps/close_the_loop/recorded_command.hpp"
 
 #include "apps/close_the_loop/output.hpp"
-#include "apps/close_the_loop/recorded/recorded_output.hpp"
+#include "apps/close_the_loop/recorded_output.hpp"
 #include "apps/libraries/measurement/read_options.hpp"
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/verdict/control_model.hpp"
 
 namespace stillhand::close_the_loop {
 
