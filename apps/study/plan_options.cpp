@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "apps/study/output.hpp"
+#include "apps/study/report/output.hpp"
 #include "services/files/settings/check_number.hpp"
 
 namespace stillhand::study {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "apps/study/output.hpp"
+#include "apps/study/report/output.hpp"
 
 /// What `stillhand study` does, for each form of a study: run, write into `out`, print.  They
 /// return the exit status.  @throws ConfigError, Interrupted and as write_study().

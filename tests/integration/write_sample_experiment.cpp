@@ -27,7 +27,7 @@
 #include "apps/close_the_loop/verdict/control_model.hpp"
 #include "apps/experiment/folder/folder.hpp"
 #include "apps/libraries/session/in_process.hpp"
-#include "apps/study/trial_analysis.hpp"
+#include "apps/study/subjects/trial_analysis.hpp"
 #include "idl/idl_text.hpp"
 #include "services/bus/recording/of_experiment.hpp"
 #include "services/core/population/population.hpp"

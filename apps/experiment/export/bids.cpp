@@ -11,7 +11,7 @@
 #include "apps/experiment/export/set_files.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "apps/libraries/session/core/trial_numbers.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/study.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
 

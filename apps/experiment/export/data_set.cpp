@@ -12,7 +12,7 @@
 #include "apps/libraries/measurement/session.hpp"
 #include "apps/libraries/measurement/session_trials.hpp"
 #include "apps/study/recorded/recorded_session.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/study.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/recording/mcap/mcap_reader.hpp"
 #include "services/files/recording/file_io.hpp"

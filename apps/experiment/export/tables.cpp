@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "apps/libraries/session/core/trial_numbers.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/study.hpp"
 #include "services/core/contract/config_error.hpp"
 
 namespace stillhand::experiment {

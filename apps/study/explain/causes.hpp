@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/study/subject_session.hpp"
+#include "apps/study/subjects/subject_session.hpp"
 
 namespace stillhand::study {
 

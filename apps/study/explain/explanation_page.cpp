@@ -7,7 +7,7 @@
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/text/text.hpp"
 #include "apps/study/explain/explanation_output.hpp"
-#include "apps/study/report_cells.hpp"
+#include "apps/study/report/report_cells.hpp"
 #include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::study {

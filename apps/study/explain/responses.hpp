@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/study/explain/causes.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/study.hpp"
 
 namespace stillhand::study {
 

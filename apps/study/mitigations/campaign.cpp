@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "apps/study/mitigations/choices.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/study.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/statistics/descriptive.hpp"
 #include "services/system/process/run_jobs.hpp"

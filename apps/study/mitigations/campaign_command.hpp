@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/study/output.hpp"
+#include "apps/study/report/output.hpp"
 
 namespace stillhand::study {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "apps/libraries/report/plot/figure_table.hpp"
-#include "apps/study/csv_cells.hpp"
+#include "apps/study/report/csv_cells.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/study/conditions.hpp"
 #include "apps/study/mitigations/design.hpp"
 #include "apps/study/mitigations/person_models.hpp"
+#include "apps/study/subjects/conditions.hpp"
 #include "services/core/cancellation/parts/countermeasure.hpp"
 
 /// The cells of the table of mitigations: what is done, in which task, with whose model, in which

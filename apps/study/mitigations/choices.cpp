@@ -9,7 +9,7 @@
 #include <functional>
 #include <random>
 
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/study.hpp"
 #include "services/core/signal/reference.hpp"
 #include "services/system/process/run_jobs.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "apps/libraries/session/loop.hpp"
 #include "apps/libraries/session/protocol.hpp"
-#include "apps/study/subject_session.hpp"
+#include "apps/study/subjects/subject_session.hpp"
 #include "services/core/display/tracking_display.hpp"
 #include "services/core/human_operator/crossover_operator.hpp"
 #include "services/core/motion/motion_generator.hpp"

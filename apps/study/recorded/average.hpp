@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apps/study/subject_session.hpp"
+#include "apps/study/subjects/subject_session.hpp"
 
 namespace stillhand::study {
 

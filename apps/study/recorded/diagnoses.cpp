@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "apps/study/conditions.hpp"
 #include "apps/study/recorded/whose.hpp"
+#include "apps/study/subjects/conditions.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/statistics/descriptive.hpp"
 #include "services/system/process/run_jobs.hpp"

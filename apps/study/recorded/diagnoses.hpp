@@ -11,7 +11,7 @@
 #include "apps/close_the_loop/recorded/recorded_loop.hpp"
 #include "apps/study/recorded/find_sessions.hpp"
 #include "apps/study/recorded/recorded_trial.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/study.hpp"
 #include "services/core/statistics/t_test.hpp"
 
 namespace stillhand::study {

@@ -7,7 +7,7 @@
 
 #include "apps/libraries/measurement/session_trials.hpp"
 #include "apps/libraries/session/session_recording.hpp"
-#include "apps/study/conditions.hpp"
+#include "apps/study/subjects/conditions.hpp"
 
 /// Which model the motor had in a recorded trial, and which one it should have had.  A model counts
 /// from the tick that it names itself; the newest one is in force.

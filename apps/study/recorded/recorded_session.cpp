@@ -15,7 +15,7 @@
 #include "apps/libraries/session/measured_ticks.hpp"
 #include "apps/libraries/session/session_recording.hpp"
 #include "apps/study/recorded/model_in_use.hpp"
-#include "apps/study/trial_analysis.hpp"
+#include "apps/study/subjects/trial_analysis.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/flag.hpp"
 #include "services/core/recording/mcap/mcap_reader.hpp"

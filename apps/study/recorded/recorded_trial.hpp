@@ -8,9 +8,9 @@
 #include <tuple>
 #include <vector>
 
-#include "apps/study/planned.hpp"
 #include "apps/study/recorded/registration.hpp"
-#include "apps/study/subject_session.hpp"
+#include "apps/study/subjects/planned.hpp"
+#include "apps/study/subjects/subject_session.hpp"
 
 namespace stillhand::study {
 

@@ -2,7 +2,7 @@
 #include "apps/study/recorded/registration.hpp"
 
 #include "apps/libraries/experiment/file/experiment_file.hpp"
-#include "apps/study/conditions.hpp"
+#include "apps/study/subjects/conditions.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/digest/digest.hpp"
 #include "services/files/recording/file_io.hpp"

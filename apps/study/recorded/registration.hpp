@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/libraries/experiment/file/standing.hpp"
+#include "apps/study/subjects/conditions.hpp"
 
 namespace stillhand::study {
 

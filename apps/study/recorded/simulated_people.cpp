@@ -12,7 +12,7 @@
 #include "apps/close_the_loop/verdict/control_model.hpp"
 #include "apps/libraries/experiment/core/plan.hpp"
 #include "apps/study/recorded/average.hpp"
-#include "apps/study/trial_analysis.hpp"
+#include "apps/study/subjects/trial_analysis.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/statistics/multiple_testing.hpp"
 #include "services/core/statistics/signed_rank.hpp"

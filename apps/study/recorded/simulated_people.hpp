@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/study/analysis.hpp"
 #include "apps/study/recorded/recorded_trial.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/analysis.hpp"
+#include "apps/study/subjects/study.hpp"
 
 namespace stillhand::study {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eqs SU-3 to SU-5 and the comparisons of conditions, on results with chosen numbers.
-#include "apps/study/analysis.hpp"
+#include "apps/study/subjects/analysis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/study/output.hpp"
+#include "apps/study/report/output.hpp"
 #include "tests/unit/study/made_record.hpp"
 
 namespace stillhand::study {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers in the study's figures; tests of the report cover how they are drawn.
-#include "apps/study/figures.hpp"
+#include "apps/study/report/figures.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

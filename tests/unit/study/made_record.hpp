@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/study/analysis.hpp"
-#include "apps/study/output.hpp"
+#include "apps/study/report/output.hpp"
+#include "apps/study/subjects/analysis.hpp"
 #include "services/core/signal/reference.hpp"
 
 /// Results of subjects that no loop has run: every number is chosen by the test.

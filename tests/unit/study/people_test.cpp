@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/study/diagnoses_output.hpp"
-#include "apps/study/participants.hpp"
 #include "apps/study/recorded/diagnoses.hpp"
 #include "apps/study/recorded/simulated_people.hpp"
-#include "apps/study/report_sections.hpp"
+#include "apps/study/report/diagnoses_output.hpp"
+#include "apps/study/report/participants.hpp"
+#include "apps/study/report/report_sections.hpp"
 #include "services/core/statistics/t_test.hpp"
 #include "tests/unit/study/made_record.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Planned comparisons and Eq. SU-13.
-#include "apps/study/planned.hpp"
+#include "apps/study/subjects/planned.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "apps/study/subject_session.hpp"
+#include "apps/study/subjects/subject_session.hpp"
 #include "services/core/signal/random.hpp"
 #include "services/core/statistics/descriptive.hpp"
 #include "services/files/settings/yaml_text.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The study as a whole: the paper's tables, and that a seed is a study.
-#include "apps/study/study.hpp"
+#include "apps/study/subjects/study.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "apps/study/analysis.hpp"
 #include "apps/study/explain/paper_tables.hpp"
+#include "apps/study/subjects/analysis.hpp"
 #include "services/core/contract/config_error.hpp"
 
 namespace stillhand::study {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One subject's session, with trials of five seconds.
-#include "apps/study/subject_session.hpp"
+#include "apps/study/subjects/subject_session.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
-#include "apps/study/output.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/report/output.hpp"
+#include "apps/study/subjects/study.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/rig/sealed_file.hpp"
 #include "tests/support/refusal.hpp"

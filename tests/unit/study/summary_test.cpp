@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/study/output.hpp"
-#include "apps/study/participants.hpp"
-#include "apps/study/study_report.hpp"
+#include "apps/study/report/output.hpp"
+#include "apps/study/report/participants.hpp"
+#include "apps/study/report/study_report.hpp"
 #include "tests/unit/study/made_record.hpp"
 
 namespace stillhand::study {
