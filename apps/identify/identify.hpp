@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "services/core/diagnosis/alignment.hpp"
-#include "services/core/diagnosis/excited_band.hpp"
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/excited_band.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/identification/frequency_response.hpp"
 #include "services/core/identification/identifier.hpp"
 #include "services/core/signal/spectrum.hpp"

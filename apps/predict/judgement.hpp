@@ -8,7 +8,7 @@
 #include "apps/libraries/report/plot/figure.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/predict/predict.hpp"
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 
 /// How right a prediction is, where the recording holds the output.
 namespace stillhand::predict {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "services/core/diagnosis/carried.hpp"
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/recording/recording.hpp"
 
 namespace stillhand::predict {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/motion/motion_trajectory.hpp"
 #include "tests/planted/recording.hpp"
 

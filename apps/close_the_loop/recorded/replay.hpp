@@ -8,7 +8,7 @@
 
 #include "services/core/cancellation/control_model.hpp"
 #include "services/core/diagnosis/carried.hpp"
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/statistics/ratio.hpp"
 
 namespace stillhand::close_the_loop {

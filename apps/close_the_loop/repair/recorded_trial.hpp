@@ -8,7 +8,7 @@
 #include "apps/close_the_loop/session/session.hpp"
 #include "services/core/cancellation/parts/adaptive_gain.hpp"
 #include "services/core/diagnosis/model/model.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 namespace stillhand::close_the_loop {
 

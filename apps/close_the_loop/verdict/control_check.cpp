@@ -13,7 +13,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/interpolation.hpp"
-#include "services/core/diagnosis/other_phases.hpp"
+#include "services/core/diagnosis/model/other_phases.hpp"
 #include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::close_the_loop {

@@ -8,7 +8,7 @@
 
 #include "services/core/cancellation/control_model.hpp"
 #include "services/core/diagnosis/carried.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 namespace stillhand::close_the_loop {
 

@@ -8,7 +8,7 @@
 #include "apps/libraries/report/page.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 
 namespace stillhand::diagnose {
 

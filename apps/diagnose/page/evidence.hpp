@@ -6,9 +6,9 @@
 
 #include "services/core/diagnosis/diagnose.hpp"
 #include "services/core/diagnosis/fitting/number_errors.hpp"
-#include "services/core/diagnosis/measurement.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 
 namespace stillhand::diagnose {
 

@@ -9,8 +9,8 @@
 #include "apps/diagnose/page/law_parts.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "services/core/diagnosis/effect_sizes.hpp"
-#include "services/core/diagnosis/excited_band.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/record/excited_band.hpp"
 #include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::diagnose {

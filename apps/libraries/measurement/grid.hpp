@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/recording/recording.hpp"
 
 namespace stillhand::measurement {

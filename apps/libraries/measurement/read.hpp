@@ -10,7 +10,7 @@
 #include "apps/libraries/measurement/sample_screen.hpp"
 #include "apps/libraries/measurement/tables/mapping.hpp"
 #include "apps/libraries/measurement/tables/table_file.hpp"
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 
 namespace stillhand::measurement {
 

@@ -11,7 +11,7 @@
 
 #include "apps/libraries/measurement/sample_faults.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 namespace stillhand::measurement {
 namespace {

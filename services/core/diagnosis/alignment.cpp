@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numeric>
 
-#include "services/core/diagnosis/digits.hpp"
+#include "services/core/diagnosis/record/digits.hpp"
 #include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::diagnosis {

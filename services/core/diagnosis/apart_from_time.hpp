@@ -3,7 +3,7 @@
 
 #include "services/core/diagnosis/fitting/blocks.hpp"
 #include "services/core/diagnosis/model/model.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 namespace stillhand::diagnosis {
 

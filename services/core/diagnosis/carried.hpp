@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "services/core/diagnosis/excited_band.hpp"
 #include "services/core/diagnosis/fitting/baseline.hpp"
 #include "services/core/diagnosis/model/seen_range.hpp"
 #include "services/core/diagnosis/model/stability.hpp"
+#include "services/core/diagnosis/record/excited_band.hpp"
 
 namespace stillhand::diagnosis {
 

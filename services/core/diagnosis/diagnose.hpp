@@ -11,10 +11,10 @@
 #include "services/core/diagnosis/carried.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
 #include "services/core/diagnosis/detection/noise_floor.hpp"
-#include "services/core/diagnosis/detection/planted_limits.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/size.hpp"
 #include "services/core/diagnosis/no_model.hpp"
+#include "services/core/diagnosis/planted_limits.hpp"
 #include "services/core/diagnosis/search.hpp"
 #include "services/core/diagnosis/unexplained.hpp"
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "services/core/diagnosis/excited_band.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
+#include "services/core/diagnosis/record/excited_band.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

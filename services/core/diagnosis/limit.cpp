@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "services/core/diagnosis/alignment.hpp"
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/diagnosis/share_words.hpp"
 
 namespace stillhand::diagnosis {

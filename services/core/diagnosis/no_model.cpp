@@ -9,11 +9,11 @@
 #include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/before_effects.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
-#include "services/core/diagnosis/digits.hpp"
 #include "services/core/diagnosis/fitting/baseline.hpp"
 #include "services/core/diagnosis/fitting/held_out.hpp"
 #include "services/core/diagnosis/limit.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/record/digits.hpp"
 #include "services/core/diagnosis/selection.hpp"
 #include "services/core/diagnosis/share_words.hpp"
 

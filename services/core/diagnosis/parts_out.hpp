@@ -8,8 +8,8 @@
 #include "services/core/diagnosis/fitting/held_out.hpp"
 #include "services/core/diagnosis/fitting/response_prior.hpp"
 #include "services/core/diagnosis/model/model.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 #include "services/core/diagnosis/share.hpp"
-#include "services/core/diagnosis/signals.hpp"
 #include "services/core/diagnosis/start_state.hpp"
 
 namespace stillhand::diagnosis {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "services/core/diagnosis/fitting/blocks.hpp"
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 
 namespace stillhand::diagnosis {
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "services/core/diagnosis/digits.hpp"
+#include "services/core/diagnosis/record/digits.hpp"
 
 namespace stillhand::diagnosis {
 

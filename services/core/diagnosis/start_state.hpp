@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "services/core/diagnosis/model/model.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 /// The state that a model has at the start of a stretch, from the first samples of its output.
 ///

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "services/core/contract/config_error.hpp"
-#include "services/core/diagnosis/digits.hpp"
+#include "services/core/diagnosis/record/digits.hpp"
 #include "services/core/signal/butterworth.hpp"
 #include "services/core/signal/spectrum.hpp"
 

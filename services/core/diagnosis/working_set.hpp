@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 
 namespace stillhand::diagnosis {
 

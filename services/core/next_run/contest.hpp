@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 #include "services/core/next_run/candidates.hpp"
 
 namespace stillhand::next_run {

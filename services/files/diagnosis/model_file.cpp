@@ -9,7 +9,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 #include "services/files/settings/json_entry.hpp"
 
 namespace stillhand::diagnosis {

@@ -11,8 +11,8 @@
 #include "services/core/cancellation/model_check.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/units.hpp"
-#include "services/core/diagnosis/fitting/modes.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 #include "services/core/population/population.hpp"
 #include "tests/support/feedthrough_records.hpp"
 

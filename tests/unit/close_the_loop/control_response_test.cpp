@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "services/core/contract/units.hpp"
-#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 #include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::close_the_loop {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 #include "tests/unit/diagnose/sample_recordings.hpp"
 
 namespace stillhand::diagnose {

@@ -8,8 +8,8 @@
 
 #include "services/core/diagnosis/diagnose.hpp"
 #include "services/core/diagnosis/effect_sizes.hpp"
-#include "services/core/diagnosis/measurement.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/signal/butterworth.hpp"
 #include "services/core/signal/random.hpp"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "services/core/contract/units.hpp"
-#include "services/core/diagnosis/fitting/modes.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

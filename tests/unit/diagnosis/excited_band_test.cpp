@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the power of a signal lies, Eq. DG-65.
-#include "services/core/diagnosis/excited_band.hpp"
+#include "services/core/diagnosis/record/excited_band.hpp"
 
 #include <gtest/gtest.h>
 

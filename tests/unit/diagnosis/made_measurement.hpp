@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "services/core/diagnosis/fitting/screening.hpp"
-#include "services/core/diagnosis/measurement.hpp"
 #include "services/core/diagnosis/model/model.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/signal/butterworth.hpp"
 #include "services/core/signal/random.hpp"
 

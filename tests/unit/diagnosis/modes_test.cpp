@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include "apps/predict/judgement.hpp"
 #include "apps/predict/predict.hpp"
-#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 

@@ -8,7 +8,7 @@
 #include "services/core/diagnosis/fitting/grams.hpp"
 #include "services/core/diagnosis/fitting/held_out.hpp"
 #include "services/core/diagnosis/model/model.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 namespace stillhand::diagnosis {
 

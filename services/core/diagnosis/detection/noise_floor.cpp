@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "services/core/diagnosis/digits.hpp"
+#include "services/core/diagnosis/record/digits.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

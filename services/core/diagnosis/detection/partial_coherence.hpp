@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 namespace stillhand::diagnosis {
 

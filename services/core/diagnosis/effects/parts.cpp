@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/core/diagnosis/digits.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
+#include "services/core/diagnosis/record/digits.hpp"
 
 namespace stillhand::diagnosis {
 

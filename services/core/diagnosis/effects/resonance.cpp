@@ -5,7 +5,7 @@
 
 #include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
-#include "services/core/diagnosis/fitting/modes.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 #include "services/core/diagnosis/model/steady_start.hpp"
 
 namespace stillhand::diagnosis {

@@ -9,8 +9,8 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/fitting/equation_error.hpp"
 #include "services/core/diagnosis/fitting/held_out.hpp"
-#include "services/core/diagnosis/fitting/modes.hpp"
-#include "services/core/diagnosis/wide_sums.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
+#include "services/core/diagnosis/record/wide_sums.hpp"
 #include "services/core/signal/decompositions.hpp"
 #include "services/core/signal/difference_model.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 namespace stillhand::diagnosis {
 

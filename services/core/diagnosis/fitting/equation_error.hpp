@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "services/core/diagnosis/model/model.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 namespace stillhand::diagnosis {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "services/core/diagnosis/wide_sums.hpp"
+#include "services/core/diagnosis/record/wide_sums.hpp"
 
 namespace stillhand::diagnosis {
 

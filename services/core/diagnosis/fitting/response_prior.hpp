@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "services/core/diagnosis/excited_band.hpp"
 #include "services/core/diagnosis/model/model.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
+#include "services/core/diagnosis/record/excited_band.hpp"
 
 namespace stillhand::diagnosis {
 

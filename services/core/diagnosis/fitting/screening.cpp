@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "services/core/diagnosis/model/steady_start.hpp"
-#include "services/core/diagnosis/wide_sums.hpp"
+#include "services/core/diagnosis/record/wide_sums.hpp"
 #include "services/core/signal/decompositions.hpp"
 #include "services/core/statistics/signed_rank.hpp"
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "services/core/diagnosis/fitting/modes.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/diagnosis/model/model_run.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "services/core/diagnosis/model/model.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 /// Starts for a nonlinearity inside the body (Eq. DG-4) from a fit with another one: a spring that
 /// softens and one with play have the same linear parts, and only the fit that got there knows

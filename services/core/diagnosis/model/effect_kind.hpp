@@ -11,8 +11,8 @@
 #include "services/core/diagnosis/model/control_role.hpp"
 #include "services/core/diagnosis/model/effect.hpp"
 #include "services/core/diagnosis/model/model.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 #include "services/core/diagnosis/model/size.hpp"
-#include "services/core/diagnosis/signals.hpp"
 #include "services/core/signal/hysteresis.hpp"
 
 namespace stillhand::diagnosis {

@@ -4,9 +4,9 @@
 #include <complex>
 #include <numbers>
 
-#include "services/core/diagnosis/fitting/modes.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/modes.hpp"
 #include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {

@@ -8,8 +8,8 @@
 #include "services/core/diagnosis/model/effect.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/model.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 #include "services/core/diagnosis/model/steady_start.hpp"
-#include "services/core/diagnosis/signals.hpp"
 
 namespace stillhand::diagnosis {
 

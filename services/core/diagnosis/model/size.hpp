@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "services/core/diagnosis/model/model.hpp"
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 /// Physical numbers of an effect, METHOD "Sizes".  Pure.
 namespace stillhand::diagnosis {

@@ -9,7 +9,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/diagnosis/model/model_run.hpp"
-#include "services/core/diagnosis/other_phases.hpp"
+#include "services/core/diagnosis/model/other_phases.hpp"
 #include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {

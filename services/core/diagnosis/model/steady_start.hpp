@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 /// Paths that start in the steady state of their first inputs, METHOD Eq. DG-54.  Pure.
 namespace stillhand::diagnosis {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/detection/planted_limits.hpp"
+#include "services/core/diagnosis/planted_limits.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

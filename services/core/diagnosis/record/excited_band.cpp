@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/excited_band.hpp"
+#include "services/core/diagnosis/record/excited_band.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/measurement.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "services/core/contract/config_error.hpp"
-#include "services/core/diagnosis/digits.hpp"
+#include "services/core/diagnosis/record/digits.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/wide_sums.hpp"
+#include "services/core/diagnosis/record/wide_sums.hpp"
 
 #include <algorithm>
 #include <array>

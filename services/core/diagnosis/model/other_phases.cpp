@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/other_phases.hpp"
+#include "services/core/diagnosis/model/other_phases.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/diagnosis/signals.hpp"
+#include "services/core/diagnosis/model/signals.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "services/core/contract/config_error.hpp"
-#include "services/core/diagnosis/excited_band.hpp"
 #include "services/core/diagnosis/model/steady_start.hpp"
-#include "services/core/diagnosis/wide_sums.hpp"
+#include "services/core/diagnosis/record/excited_band.hpp"
+#include "services/core/diagnosis/record/wide_sums.hpp"
 #include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::diagnosis {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "services/core/diagnosis/measurement.hpp"
 #include "services/core/diagnosis/model/effect.hpp"
+#include "services/core/diagnosis/record/measurement.hpp"
 
 namespace stillhand::diagnosis {
 
