@@ -19,7 +19,8 @@ SEED = 90417733560021
 KINDS = ("nonlinear_stiffness", "asymmetry", "dead_zone", "time_varying_gain", "resonance", "position_ripple",
          "coulomb_friction", "coupled_input", "tone", "delay", "output_saturation")
 SECRET = re.compile(r"stillhand::rig::(UndeclaredEffect|SealedEffect|EffectOnChain|draw_effect|draw_outside|EffectPlan)")
-SEALED_HEADERS = re.compile(r'#include "services/(core/rig/undeclared/\w+|files/rig/sealed_file)\.hpp"')
+SEALED_HEADERS = re.compile(r'#include "services/(core/rig/(undeclared/\w+|parts/chain_effect)|files/rig/sealed_file)'
+                            r'\.hpp"')
 # The programs that step the rig in one process, and those that write the sealed file.
 MAY_INCLUDE = ("services/core/rig/", "services/files/rig/", "services/processes/rig/", "apps/libraries/session/",
                "apps/lab/", "apps/study/", "apps/close_the_loop/session/session.",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/rig_record.hpp"
 
-#include "services/core/rig/chain.hpp"
+#include "services/core/rig/parts/chain.hpp"
 #include "services/core/sensing/conditioner.hpp"
 #include "services/core/signal/butterworth.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "services/core/cancellation/control_model.hpp"
 #include "services/core/human_operator/crossover_config.hpp"
-#include "services/core/rig/body_config.hpp"
+#include "services/core/rig/parts/body_config.hpp"
 
 namespace stillhand::close_the_loop {
 

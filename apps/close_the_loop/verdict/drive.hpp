@@ -7,8 +7,8 @@
 
 #include "services/core/diagnosis/diagnose.hpp"
 #include "services/core/recording/recording.hpp"
-#include "services/core/rig/body_config.hpp"
-#include "services/core/rig/motor.hpp"
+#include "services/core/rig/parts/body_config.hpp"
+#include "services/core/rig/parts/motor.hpp"
 
 namespace stillhand::close_the_loop {
 

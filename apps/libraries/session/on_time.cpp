@@ -11,7 +11,7 @@
 #include "apps/libraries/session/core/trial_forces.hpp"
 #include "apps/libraries/session/loop.hpp"
 #include "apps/libraries/session/measured_ticks.hpp"
-#include "services/core/rig/sensors.hpp"
+#include "services/core/rig/parts/sensors.hpp"
 #include "services/messages/cancellation/codec.hpp"
 #include "services/messages/sensing/codec.hpp"
 

@@ -10,8 +10,8 @@
 #include "services/core/cancellation/config.hpp"
 #include "services/core/cancellation/parts/countermeasure.hpp"
 #include "services/core/contract/trial.hpp"
-#include "services/core/rig/body_config.hpp"
-#include "services/core/rig/motor.hpp"
+#include "services/core/rig/parts/body_config.hpp"
+#include "services/core/rig/parts/motor.hpp"
 #include "services/core/sensing/conditioner.hpp"
 
 namespace stillhand::session {

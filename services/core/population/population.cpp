@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "services/core/contract/clamp_fields.hpp"
-#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/parts/body_response.hpp"
 #include "services/core/signal/random.hpp"
 
 namespace stillhand::population {

@@ -5,7 +5,7 @@
 
 #include "services/core/contract/config_field.hpp"
 #include "services/core/human_operator/crossover_config.hpp"
-#include "services/core/rig/body_config.hpp"
+#include "services/core/rig/parts/body_config.hpp"
 
 namespace stillhand::population {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "services/core/contract/config_error.hpp"
-#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/parts/body_response.hpp"
 #include "tests/support/simulated_arm.hpp"
 
 namespace stillhand::admittance {

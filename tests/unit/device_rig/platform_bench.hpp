@@ -11,7 +11,7 @@
 
 #include "services/core/device_rig/platform_exchange.hpp"
 #include "services/core/motion/motion_generator.hpp"
-#include "services/core/rig/platform.hpp"
+#include "services/core/rig/parts/platform.hpp"
 #include "services/devices/device_rig/plant_limits.hpp"
 #include "services/devices/device_rig/platform_drive.hpp"
 #include "services/system/process/platform_permission.hpp"

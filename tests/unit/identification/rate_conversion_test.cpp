@@ -8,7 +8,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
-#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/parts/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "services/core/contract/config_error.hpp"
-#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/parts/body_response.hpp"
 #include "services/core/rig/rig.hpp"
 
 namespace stillhand::population {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/parts/body_response.hpp"
 
 #include <gtest/gtest.h>
 

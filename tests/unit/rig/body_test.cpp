@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/body.hpp"
+#include "services/core/rig/parts/body.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "services/core/contract/units.hpp"
-#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/parts/body_response.hpp"
 
 namespace stillhand::rig {
 namespace {

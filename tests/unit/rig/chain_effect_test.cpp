@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/undeclared/chain_effect.hpp"
+#include "services/core/rig/parts/chain_effect.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "services/core/contract/units.hpp"
-#include "services/core/rig/body.hpp"
+#include "services/core/rig/parts/body.hpp"
 
 namespace stillhand::rig {
 namespace {

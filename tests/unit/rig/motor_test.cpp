@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/motor.hpp"
+#include "services/core/rig/parts/motor.hpp"
 
 #include <gtest/gtest.h>
 

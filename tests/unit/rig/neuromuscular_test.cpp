@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What nerves and muscles add to the body: Eq. RG-27 to RG-32, RG-40.
-#include "services/core/rig/neuromuscular.hpp"
+#include "services/core/rig/parts/neuromuscular.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "services/core/contract/units.hpp"
-#include "services/core/rig/body.hpp"
+#include "services/core/rig/parts/body.hpp"
 #include "services/core/rig/rig.hpp"
 
 namespace stillhand::rig {

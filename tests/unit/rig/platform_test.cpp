@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/platform.hpp"
+#include "services/core/rig/parts/platform.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/sensors.hpp"
+#include "services/core/rig/parts/sensors.hpp"
 
 #include <gtest/gtest.h>
 

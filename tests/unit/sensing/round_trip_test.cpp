@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "services/core/contract/units.hpp"
-#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/parts/body_response.hpp"
 #include "services/core/rig/rig.hpp"
 #include "services/core/sensing/conditioner.hpp"
 #include "services/core/signal/butterworth.hpp"

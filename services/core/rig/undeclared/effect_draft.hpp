@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "services/core/rig/rig.hpp"
+#include "services/core/rig/parts/rig_config.hpp"
 #include "services/core/rig/undeclared/effect_sizing.hpp"
 #include "services/core/rig/undeclared/undeclared_effect.hpp"
 #include "services/core/signal/random.hpp"

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <complex>
 
-#include "services/core/rig/band_noise.hpp"
-#include "services/core/rig/body.hpp"
-#include "services/core/rig/body_response.hpp"
-#include "services/core/rig/sensors.hpp"
+#include "services/core/rig/parts/band_noise.hpp"
+#include "services/core/rig/parts/body.hpp"
+#include "services/core/rig/parts/body_response.hpp"
+#include "services/core/rig/parts/sensors.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "services/core/rig/body_config.hpp"
-#include "services/core/rig/undeclared/chain_effect.hpp"
+#include "services/core/rig/parts/body_config.hpp"
+#include "services/core/rig/parts/chain_effect.hpp"
 
 namespace stillhand::rig {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/rig/undeclared/sealed_effect.hpp"
 
-#include "services/core/rig/rig.hpp"
+#include "services/core/rig/parts/rig_config.hpp"
 #include "services/core/rig/undeclared/effect_draw.hpp"
 #include "services/core/rig/undeclared/outside_draw.hpp"
 #include "services/core/rig/undeclared/undeclared_effect.hpp"

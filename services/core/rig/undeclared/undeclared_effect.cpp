@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "services/core/contract/units.hpp"
-#include "services/core/rig/sensors.hpp"
+#include "services/core/rig/parts/sensors.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <limits>
 
-#include "services/core/rig/band_noise.hpp"
-#include "services/core/rig/platform.hpp"
-#include "services/core/rig/undeclared/chain_effect.hpp"
+#include "services/core/rig/parts/band_noise.hpp"
+#include "services/core/rig/parts/chain_effect.hpp"
+#include "services/core/rig/parts/platform.hpp"
 #include "services/core/rig/undeclared/sealed_effect.hpp"
 #include "services/core/signal/delay_line.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/neuromuscular.hpp"
+#include "services/core/rig/parts/neuromuscular.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "services/core/rig/band_noise.hpp"
-#include "services/core/rig/neuromuscular_config.hpp"
-#include "services/core/rig/sensor_noise.hpp"
+#include "services/core/rig/parts/band_noise.hpp"
+#include "services/core/rig/parts/neuromuscular_config.hpp"
+#include "services/core/rig/parts/sensor_noise.hpp"
 #include "services/core/signal/delay_line.hpp"
 #include "services/core/signal/running_rms.hpp"
 #include "services/core/signal/second_order_lag.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/body.hpp"
+#include "services/core/rig/parts/body.hpp"
 
 #include <algorithm>
 #include <cmath>

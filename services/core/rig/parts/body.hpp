@@ -5,10 +5,10 @@
 
 #include "services/core/contract/flag.hpp"
 #include "services/core/contract/tick.hpp"
-#include "services/core/rig/body_config.hpp"
-#include "services/core/rig/chain.hpp"
-#include "services/core/rig/neuromuscular.hpp"
-#include "services/core/rig/undeclared/chain_effect.hpp"
+#include "services/core/rig/parts/body_config.hpp"
+#include "services/core/rig/parts/chain.hpp"
+#include "services/core/rig/parts/chain_effect.hpp"
+#include "services/core/rig/parts/neuromuscular.hpp"
 
 namespace stillhand::rig {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "services/core/contract/config_field.hpp"
-#include "services/core/rig/neuromuscular_config.hpp"
+#include "services/core/rig/parts/neuromuscular_config.hpp"
 
 namespace stillhand::rig {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "services/core/rig/chain.hpp"
+#include "services/core/rig/parts/chain.hpp"
 #include "services/core/signal/delay_line.hpp"
 #include "services/core/signal/second_order_lag.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "services/core/contract/config_field.hpp"
 #include "services/core/contract/flag.hpp"
-#include "services/core/rig/sensor_noise.hpp"
+#include "services/core/rig/parts/sensor_noise.hpp"
 
 namespace stillhand::rig {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "services/core/rig/sensor_noise.hpp"
+#include "services/core/rig/parts/sensor_noise.hpp"
 #include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::rig {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/band_noise.hpp"
+#include "services/core/rig/parts/band_noise.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/undeclared/chain_effect.hpp"
+#include "services/core/rig/parts/chain_effect.hpp"
 
 #include <algorithm>
 #include <cmath>

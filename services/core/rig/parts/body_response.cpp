@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/body_response.hpp"
+#include "services/core/rig/parts/body_response.hpp"
 
 #include <numbers>
 
 #include "services/core/contract/expects.hpp"
-#include "services/core/rig/chain.hpp"
+#include "services/core/rig/parts/chain.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/rig/sensor_noise.hpp"
+#include "services/core/rig/parts/sensor_noise.hpp"
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 
 #include <complex>
 
-#include "services/core/rig/body_config.hpp"
+#include "services/core/rig/parts/body_config.hpp"
 
 namespace stillhand::rig {
 

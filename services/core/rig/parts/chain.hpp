@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "services/core/contract/tick.hpp"
-#include "services/core/rig/body_config.hpp"
+#include "services/core/rig/parts/body_config.hpp"
 
 namespace stillhand::rig {
 
