@@ -9,6 +9,7 @@
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::admittance {
 namespace {
@@ -211,11 +212,10 @@ std::vector<ArmParameter> parameters(bool reflex) {
 
 // Inverse of J'J with its smallest directions kept: they become large, never wrong.
 Eigen::MatrixXd inverse_information(const Jacobian& slopes, double& condition) {
-  const Eigen::JacobiSVD<Jacobian> svd(slopes, Eigen::ComputeThinV);
-  const auto& s = svd.singularValues();
+  const auto [u, s, v] = signal::singular_vectors(slopes);
   condition = s[0] / s[s.size() - 1];
   const Numbers floor = s.cwiseMax(1e-12 * s[0]);
-  return svd.matrixV() * floor.cwiseAbs2().cwiseInverse().asDiagonal() * svd.matrixV().transpose();
+  return v * floor.cwiseAbs2().cwiseInverse().asDiagonal() * v.transpose();
 }
 
 // Eqs. AD-13 and AD-14.

@@ -9,6 +9,7 @@
 
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/model_run.hpp"
+#include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -35,17 +36,16 @@ VectorXd state_before(const Body& body, const std::vector<std::vector<double>>& 
 
 // A root L of a positive semidefinite matrix, S = L L'.
 MatrixXd root_of(const MatrixXd& s) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(s);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const auto [values, vectors] = signal::symmetric_eigenvectors(s);
+  return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 // Of the residual r = M x + white noise, x of variance 1 times the square of a factor: the x for
 // the factor with which r is most likely.
 VectorXd most_likely(const MatrixXd& m, const VectorXd& r, double noise) {
   constexpr double kFactors[] = {1.0, 3.0, 10.0, 30.0};
-  const Eigen::JacobiSVD<MatrixXd> svd(m, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd& size = svd.singularValues();
-  const VectorXd seen = svd.matrixU().transpose() * r;
+  const auto [u, size, v] = signal::singular_vectors(m);
+  const VectorXd seen = u.transpose() * r;
   double least = std::numeric_limits<double>::infinity();
   VectorXd gain = VectorXd::Zero(size.size());
   for (const double factor : kFactors) {
@@ -56,7 +56,7 @@ VectorXd most_likely(const MatrixXd& m, const VectorXd& r, double noise) {
     least = unlikely;
     gain = factor * factor * size.cwiseQuotient(variance);
   }
-  return svd.matrixV() * gain.cwiseProduct(seen);
+  return v * gain.cwiseProduct(seen);
 }
 
 double square_at(const GivenRows& rows, const std::vector<double>& measured,

@@ -11,6 +11,7 @@
 #include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::next_run {
 namespace {
@@ -30,12 +31,12 @@ constexpr double kNeverFits = 1e12;      // [-] a run that is not finite
 MatrixXd inverse(const MatrixXd& squares) {
   const VectorXd scale =
       squares.diagonal().unaryExpr([](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * squares *
-                                                      scale.asDiagonal());
-  const double least = kUndetermined * std::max(eigen.eigenvalues().tail(1)[0], 1e-300);
+  const auto [values, vectors] =
+      signal::symmetric_eigenvectors(scale.asDiagonal() * squares * scale.asDiagonal());
+  const double least = kUndetermined * std::max(values.tail(1)[0], 1e-300);
   const VectorXd inverted =
-      eigen.eigenvalues().unaryExpr([least](double x) { return x > least ? 1.0 / x : 0.0; });
-  const MatrixXd root = scale.asDiagonal() * eigen.eigenvectors();
+      values.unaryExpr([least](double x) { return x > least ? 1.0 / x : 0.0; });
+  const MatrixXd root = scale.asDiagonal() * vectors;
   return root * inverted.asDiagonal() * root.transpose();
 }
 
@@ -102,9 +103,9 @@ double error_of_sum(const VectorXd& values, const Signals& signals) {
 double price_of(const MatrixXd& information, const VectorXd& of_a_sample) {
   const VectorXd scale =
       of_a_sample.unaryExpr([](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(
-      scale.asDiagonal() * information * scale.asDiagonal(), Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues().unaryExpr([](double x) { return std::log1p(std::max(x, 0.0)); }).sum();
+  const VectorXd values =
+      signal::symmetric_eigenvalues(scale.asDiagonal() * information * scale.asDiagonal());
+  return values.unaryExpr([](double x) { return std::log1p(std::max(x, 0.0)); }).sum();
 }
 
 // Where a stretch begins to be judged, the noise model of so many taps lacks the past that makes

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
 
 namespace stillhand::signal {
 
@@ -24,10 +25,24 @@ Eigen::VectorXd singular_values(const Eigen::MatrixXd& a) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
 }
 
+SingularValues singular_vectors(const Eigen::MatrixXd& a) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
+}
+
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& a) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& a) { return a.eigenvalues(); }
+SymmetricEigen symmetric_eigenvectors(const Eigen::MatrixXd& a) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& a) {
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(a, false);
+  if (solver.info() == Eigen::Success) return solver.eigenvalues();
+  return Eigen::VectorXcd::Constant(a.rows(), std::numeric_limits<double>::quiet_NaN());
+}
 
 }  // namespace stillhand::signal

@@ -20,10 +20,27 @@ Eigen::MatrixXd upper_factor(const Eigen::MatrixXd& a);
 /// Largest first: one-sided Jacobi (8.6.3).
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& a);
 
+/// A = U diag(values) V' [m x n], min(m, n) values, largest first.
+struct SingularValues {
+  Eigen::MatrixXd u;
+  Eigen::VectorXd values;
+  Eigen::MatrixXd v;
+};
+/// Two-sided Jacobi of Eigen (8.6.3), with the vectors.
+SingularValues singular_vectors(const Eigen::MatrixXd& a);
+
 /// Smallest first, of a symmetric matrix (8.3).
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& a);
 
-/// Of any real square matrix, in no order: Hessenberg form and QR steps (7.5).
+/// A = vectors diag(values) vectors' [n x n], symmetric; smallest first.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+SymmetricEigen symmetric_eigenvectors(const Eigen::MatrixXd& a);
+
+/// Of any real square matrix, in no order: Hessenberg form and QR steps (7.5).  NaN where the steps
+/// do not converge.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& a);
 
 }  // namespace stillhand::signal

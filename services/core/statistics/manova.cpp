@@ -2,7 +2,6 @@
 #include "services/core/statistics/manova.hpp"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/signal/decompositions.hpp"
 #include "services/core/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
@@ -168,7 +168,7 @@ class ErrorMetric {
     const MatrixXd ratio =
         qr_.matrixR().topLeftCorner(p, p).triangularView<Eigen::Upper>().transpose().solve(
             scaled.transpose());
-    return Eigen::JacobiSVD<MatrixXd>(ratio).singularValues().array().square();
+    return signal::singular_values(ratio).array().square();
   }
 
  private:

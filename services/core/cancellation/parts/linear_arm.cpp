@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/cancellation/parts/linear_arm.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <complex>
 #include <numbers>
@@ -10,6 +9,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
+#include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::cancellation {
 namespace {
@@ -85,11 +85,9 @@ Eigen::MatrixXd stepped(const Continuous<N>& system) {
   if (!system.a.allFinite() || !system.b.allFinite()) {
     throw ConfigError("mitigation.arm", "a value out of range", "finite values of a person's size");
   }
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(system.a, false);
-  // Written so that poles that were not found, and a NaN, say "not stable".
-  const bool rests =
-      solver.info() == Eigen::Success &&
-      std::ranges::all_of(solver.eigenvalues(), [](const auto& pole) { return pole.real() < 0.0; });
+  // Written so that poles that were not found say "not stable".
+  const bool rests = std::ranges::all_of(signal::eigenvalues(system.a),
+                                         [](const auto& pole) { return pole.real() < 0.0; });
   if (!rests) {
     throw ConfigError("mitigation.arm", "an arm that does not come to rest", "a stable arm");
   }

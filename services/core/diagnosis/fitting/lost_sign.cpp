@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/diagnosis/fitting/lost_sign.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -72,7 +72,7 @@ VectorXd from_square(const MatrixXd& x, const VectorXd& y) {
   for (Index i = 0; i < m; ++i) {
     for (Index j = i; j < m; ++j) square(i, j) = square(j, i) = factors[next++];
   }
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(square).eigenvectors().col(m - 1);
+  return signal::symmetric_eigenvectors(square).vectors.col(m - 1);
 }
 
 VectorXd signed_by(const VectorXd& response, const VectorXd& y) {

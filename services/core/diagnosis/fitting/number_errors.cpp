@@ -7,6 +7,7 @@
 
 #include "services/core/contract/expects.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
+#include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -63,13 +64,12 @@ NumberErrors::NumberErrors(const Model& model, const Linearisation& line, const 
     if (length[i] > 0.0) scale_[i] = 1.0 / length[i];
   }
   const Eigen::MatrixXd unit = line.jacobian * scale_.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.transpose() * unit);
-  const Eigen::VectorXd& value = eigen.eigenvalues();  // ascending
+  const auto [value, vectors] = signal::symmetric_eigenvectors(unit.transpose() * unit);
   const Eigen::Index weak = (value.array() < kUndetermined * value[count - 1]).count();
-  undetermined_ = eigen.eigenvectors().leftCols(weak);
+  undetermined_ = vectors.leftCols(weak);
+  const Eigen::VectorXd root = value.tail(count - weak).cwiseSqrt();
   const Eigen::MatrixXd to_numbers =
-      eigen.eigenvectors().rightCols(count - weak) *
-      value.tail(count - weak).cwiseSqrt().cwiseInverse().asDiagonal();
+      vectors.rightCols(count - weak) * root.cwiseInverse().asDiagonal();
   Eigen::MatrixXd spread = unit * to_numbers;
   const std::vector<double> taps = noise_taps(line.residual, signals);
   if (!taps.empty()) spread_by_noise(taps, signals, spread);

@@ -7,6 +7,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/modes.hpp"
+#include "services/core/signal/decompositions.hpp"
 #include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
@@ -93,12 +94,12 @@ void fit_outside(const std::vector<bool>& rows, const Stretch& stretch, Eigen::M
   for (Eigen::Index n = 0; n < there.rows(); ++n) {
     if (!rows[stretch.first + static_cast<std::size_t>(n)]) there.row(n).setZero();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> power(there.transpose() * there);
-  basis *= power.eigenvectors();
-  there *= power.eigenvectors();
+  const auto [power, vectors] = signal::symmetric_eigenvectors(there.transpose() * there);
+  basis *= vectors;
+  there *= vectors;
   dual = basis;
   for (Eigen::Index j = 0; j < basis.cols(); ++j) {
-    if (power.eigenvalues()[j] >= kMost) dual.col(j) = there.col(j) / power.eigenvalues()[j];
+    if (power[j] >= kMost) dual.col(j) = there.col(j) / power[j];
   }
 }
 
