@@ -4,11 +4,7 @@
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
-
-#include <cstddef>
-#include <string>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/system/process/domain.hpp"
@@ -37,24 +33,10 @@ void check_port(std::uint32_t domain) {
 }  // namespace
 
 DomainLock::DomainLock(std::uint32_t domain, std::uint32_t rig)
-    : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-  const std::string name = fmt::format("stillhand-lab-{}-{}", domain, rig);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  name.copy(address.sun_path + 1, sizeof(address.sun_path) - 2);
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  try {
-    if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
-      throw ConfigError("--domain", fmt::format("{}, where another lab runs", domain),
-                        "a free DDS domain, or another --rig");
-    }
-    check_port(domain);
-  } catch (...) {
-    close(socket_);
-    throw;
-  }
+    : lock_(fmt::format("lab-{}-{}", domain, rig), "--domain",
+            fmt::format("{}, where another lab runs", domain),
+            "a free DDS domain, or another --rig") {
+  check_port(domain);
 }
-
-DomainLock::~DomainLock() { close(socket_); }
 
 }  // namespace stillhand::lab

@@ -3,21 +3,19 @@
 
 #include <cstdint>
 
+#include "services/system/process/host_lock.hpp"
+
 namespace stillhand::lab {
 
-/// Admits one lab for each domain and rig on this machine.  An abstract socket name is the lock: it
-/// is gone however the process ends.
+/// Admits one lab for each domain and rig on this machine.
 class DomainLock {
  public:
   /// @throws ConfigError when another lab holds the lock, or another program the domain's
   ///         discovery port: the processes of the session would not discover each other.
   DomainLock(std::uint32_t domain, std::uint32_t rig);
-  ~DomainLock();
-  DomainLock(const DomainLock&) = delete;
-  DomainLock& operator=(const DomainLock&) = delete;
 
  private:
-  int socket_;
+  runtime::HostLock lock_;
 };
 
 }  // namespace stillhand::lab

@@ -13,7 +13,8 @@
 
 namespace stillhand::runtime {
 
-HostLock::HostLock(const std::string& name, const std::string& what)
+HostLock::HostLock(const std::string& name, const std::string& what, const std::string& got,
+                   const std::string& want)
     : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
   const std::string whole = "stillhand-" + name;
   sockaddr_un address{};
@@ -24,9 +25,7 @@ HostLock::HostLock(const std::string& name, const std::string& what)
   if (socket_ >= 0 && bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) == 0) return;
   const int error = errno;
   if (socket_ >= 0) close(socket_);
-  if (error == EADDRINUSE) {
-    throw ConfigError(what, "another process of this machine has it", "one process for it");
-  }
+  if (error == EADDRINUSE) throw ConfigError(what, got, want);
   throw ConfigError(what, "no lock: " + std::generic_category().message(error),
                     "a socket of this machine");
 }

@@ -10,9 +10,10 @@ namespace stillhand::runtime {
 class HostLock {
  public:
   /// @param name  of the lock, at most 90 characters
-  /// @param what  is locked, for the error
-  /// @throws ConfigError when another process has it
-  HostLock(const std::string& name, const std::string& what);
+  /// @throws ConfigError of these three when another process has it
+  HostLock(const std::string& name, const std::string& what,
+           const std::string& got = "another process of this machine has it",
+           const std::string& want = "one process for it");
   ~HostLock();
   HostLock(const HostLock&) = delete;
   HostLock& operator=(const HostLock&) = delete;

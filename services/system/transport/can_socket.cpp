@@ -6,7 +6,6 @@
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,20 +25,6 @@ namespace {
 }
 
 std::string can_error() { return std::generic_category().message(errno); }
-
-/// @returns a descriptor that holds the name until it is closed; -1: another process has it
-int lock_of(const std::string& interface) {
-  const int lock = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::string name = "stillhand-" + interface;
-  // Its first byte is 0: a name without a file, which ends with its process.
-  std::ranges::copy(name, address.sun_path + 1);
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  if (bind(lock, reinterpret_cast<const sockaddr*>(&address), size) == 0) return lock;
-  ::close(lock);
-  return -1;
-}
 
 }  // namespace
 
@@ -82,10 +67,8 @@ void CanSocket::open(const std::string& interface) {
       request.ifr_mtu < static_cast<int>(CANFD_MTU)) {
     refuse_can(interface, "an interface without CAN-FD", "fd on, in its `ip link set`");
   }
-  lock_ = lock_of(interface);
-  if (lock_ < 0) {
-    refuse_can(interface, "an interface that another process has", "one for this session alone");
-  }
+  lock_.emplace(interface, "CAN interface " + interface, "an interface that another process has",
+                "one for this session alone");
   const int on = 1;
   sockaddr_can address{};
   address.can_family = AF_CAN;
@@ -97,9 +80,9 @@ void CanSocket::open(const std::string& interface) {
 }
 
 void CanSocket::close() noexcept {
-  if (lock_ >= 0) ::close(lock_);
+  lock_.reset();
   if (descriptor_ >= 0) ::close(descriptor_);
-  lock_ = descriptor_ = -1;
+  descriptor_ = -1;
 }
 
 std::string_view CanSocket::read(std::span<char> into) noexcept {

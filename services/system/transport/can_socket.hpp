@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "services/system/process/host_lock.hpp"
 #include "services/system/transport/port.hpp"
 
 namespace stillhand::runtime {
@@ -27,7 +29,7 @@ class CanSocket final : public Port {
   void close() noexcept;
 
   int descriptor_ = -1;
-  int lock_ = -1;  ///< an abstract address, which one process has
+  std::optional<HostLock> lock_;
   bool gone_ = false;
 };
 
