@@ -4,46 +4,34 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace stillhand::session {
 namespace {
 
 constexpr const char* kModelChanged = "model no longer holds";
 
+// In the order of idl/session.idl.
+constexpr std::array kEvents{"deadline missed",
+                             "cycle missed",
+                             "ticks lost",
+                             "liveliness lost",
+                             "liveliness recovered",
+                             "interlock opened",
+                             "motor force zero after interlock opened",
+                             "model refused",
+                             "model loaded",
+                             "incompatible QoS",
+                             "note",
+                             "clock stepped",
+                             "clock drifts",
+                             "asked from outside",
+                             "second writer"};
+static_assert(kEvents.size() == stillhand_msgs::EVENT_SECOND_WRITER + 1);
+
 const char* name_of(stillhand_msgs::EventKind kind) {
-  switch (kind) {
-    case stillhand_msgs::EVENT_DEADLINE_MISSED:
-      return "deadline missed";
-    case stillhand_msgs::EVENT_CYCLE_MISSED:
-      return "cycle missed";
-    case stillhand_msgs::EVENT_TICKS_LOST:
-      return "ticks lost";
-    case stillhand_msgs::EVENT_LIVELINESS_LOST:
-      return "liveliness lost";
-    case stillhand_msgs::EVENT_LIVELINESS_RECOVERED:
-      return "liveliness recovered";
-    case stillhand_msgs::EVENT_INTERLOCK_OPENED:
-      return "interlock opened";
-    case stillhand_msgs::EVENT_FORCE_ZERO:
-      return "motor force zero after interlock opened";
-    case stillhand_msgs::EVENT_MODEL_REFUSED:
-      return "model refused";
-    case stillhand_msgs::EVENT_MODEL_LOADED:
-      return "model loaded";
-    case stillhand_msgs::EVENT_INCOMPATIBLE_QOS:
-      return "incompatible QoS";
-    case stillhand_msgs::EVENT_CLOCK_STEPPED:
-      return "clock stepped";
-    case stillhand_msgs::EVENT_CLOCK_DRIFTS:
-      return "clock drifts";
-    case stillhand_msgs::EVENT_COMMAND:
-      return "asked from outside";
-    case stillhand_msgs::EVENT_SECOND_WRITER:
-      return "second writer";
-    case stillhand_msgs::EVENT_NOTE:
-      return "note";
-  }
-  return "event";
+  const auto number = static_cast<std::size_t>(kind);
+  return number < kEvents.size() ? kEvents[number] : "event";
 }
 
 bool same(const Mark& a, const Mark& b) {

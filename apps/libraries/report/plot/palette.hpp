@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string_view>
 
 #include "apps/libraries/report/plot/figure.hpp"
@@ -23,37 +24,23 @@ constexpr Look look(Colour colour) {
   constexpr int kTriangleDown = 11;
   constexpr int kDiamond = 13;
   constexpr int kPentagon = 15;
-  switch (colour) {
-    case Colour::kConditionA:
-      return {"#0072b2", kCircle};
-    case Colour::kConditionB:
-      return {"#d55e00", kSquare};
-    case Colour::kConditionC:
-      return {"#009e73", kTriangle};
-    case Colour::kConditionCPrime:
-      return {"#7fb800", kTriangleDown};
-    case Colour::kConditionCPlus:
-      return {"#cc79a7", kDiamond};
-    case Colour::kConditionD:
-      return {"#e69f00", kTriangleDown};
-    case Colour::kConditionE:
-      return {"#56b4e9", kPentagon};
-    case Colour::kConditionF:
-      return {"#9a8700", kCircle};
-    case Colour::kModel:
-      return {"#5b2a86", kDiamond};
-    case Colour::kMeasured:
-      return {"#4d4d4d", kCircle};
-    case Colour::kTarget:
-      return {"#111111", kSquare};
-    case Colour::kNeutral:
-      return {"#808080", kCircle};
-    case Colour::kAccent:
-      return {"#005f73", kTriangle};
-    case Colour::kWarning:
-      return {"#a4001d", kTriangleDown};
-  }
-  return {"#000000", kCircle};
+  // In the order of Colour.
+  constexpr std::array<Look, 14> kLooks{{{"#0072b2", kCircle},
+                                         {"#d55e00", kSquare},
+                                         {"#009e73", kTriangle},
+                                         {"#7fb800", kTriangleDown},
+                                         {"#cc79a7", kDiamond},
+                                         {"#e69f00", kTriangleDown},
+                                         {"#56b4e9", kPentagon},
+                                         {"#9a8700", kCircle},
+                                         {"#5b2a86", kDiamond},
+                                         {"#4d4d4d", kCircle},
+                                         {"#111111", kSquare},
+                                         {"#808080", kCircle},
+                                         {"#005f73", kTriangle},
+                                         {"#a4001d", kTriangleDown}}};
+  static_assert(kLooks.size() == static_cast<std::size_t>(Colour::kWarning) + 1);
+  return kLooks[static_cast<std::size_t>(colour)];
 }
 
 /// Lines and letters around the data.
