@@ -3,31 +3,21 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <string>
 
 #include "apps/libraries/report/result_files.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "services/files/settings/edit_text.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand::calibrate {
-namespace {
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-}  // namespace
-
 void write_calibrations(const std::filesystem::path& config, const device_rig::Calibrations& all,
                         const std::vector<device_rig::SensingNumber>& numbers) {
   const auto sensing_file = config / "sensing.yaml";
   const auto file = config / "calibration.yaml";
-  std::string sensing = text_of(sensing_file);
+  std::string sensing = recording::text_of(sensing_file);
   for (const auto& number : numbers) {
     sensing = settings::with_setting(std::move(sensing), number.key,
                                      fmt::format("{}", number.calibrated));

@@ -157,11 +157,7 @@ void run_live(const Arguments& arguments) {
   record.decision = decide(record.conditions, record.result);
   record.repairs = repair_list(record.result, record.options);
   // The verdict is written before the truth is opened.
-  if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
-                                                           verdict_json(record.result.verdict()));
-      !status.ok()) {
-    throw std::runtime_error(status.text);
-  }
+  recording::write_file(out / kVerdictFile, verdict_json(record.result.verdict()));
   if (!live.sealed.empty()) {
     lab::open_undeclared_effect(arguments.lab, live, kVerdictFile);
     record.truth = truth_of(recording::read_file((out / rig::kSealedFile).string()));

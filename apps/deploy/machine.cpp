@@ -13,8 +13,6 @@
 
 #include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -24,17 +22,12 @@
 #include "services/bus/identity.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/devices/device_rig/load_devices.hpp"
+#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::deploy {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Empty if the file does not exist or cannot be read.
-std::string read_of(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 std::optional<ClockState> clock_state() {
   timex state{};  // no modes: only reads
@@ -68,7 +61,7 @@ std::map<std::uint64_t, std::string> owners_of_sockets() {
       const std::string target = fs::read_symlink(file.path(), error).string();
       constexpr std::string_view kSocket = "socket:[";
       if (error || !target.starts_with(kSocket)) continue;
-      std::string name = read_of(process.path() / "comm");
+      std::string name = recording::text_of(process.path() / "comm");
       owners[std::stoull(target.substr(kSocket.size()))] = name.substr(0, name.find('\n'));
     }
   }
@@ -76,8 +69,8 @@ std::map<std::uint64_t, std::string> owners_of_sockets() {
 }
 
 std::vector<TakenPort> taken_ports_with_owners(std::uint32_t first, std::uint32_t last) {
-  std::vector<TakenPort> taken =
-      taken_ports(read_of("/proc/net/udp") + read_of("/proc/net/udp6"), first, last);
+  std::vector<TakenPort> taken = taken_ports(
+      recording::text_of("/proc/net/udp") + recording::text_of("/proc/net/udp6"), first, last);
   if (taken.empty()) return taken;
   const auto owners = owners_of_sockets();
   for (TakenPort& each : taken) {
@@ -92,7 +85,7 @@ std::vector<std::string> governors() {
   std::vector<std::string> texts;
   std::error_code ignored;
   for (const auto& cpu : fs::directory_iterator("/sys/devices/system/cpu", ignored)) {
-    std::string text = read_of(cpu.path() / "cpufreq" / "scaling_governor");
+    std::string text = recording::text_of(cpu.path() / "cpufreq" / "scaling_governor");
     if (!text.empty()) texts.push_back(std::move(text));
   }
   return texts;
@@ -100,7 +93,7 @@ std::vector<std::string> governors() {
 
 SerialPortState serial_port_state(const std::string& path, const std::string& key) {
   SerialPortState port{.path = path, .key = key};
-  struct stat state{};
+  struct stat state = {};
   port.exists = stat(path.c_str(), &state) == 0;
   port.open_to_us = access(path.c_str(), R_OK | W_OK) == 0;
   if (!port.exists) return port;
@@ -109,8 +102,8 @@ SerialPortState serial_port_state(const std::string& path, const std::string& ke
   port.group = owner != nullptr ? owner->gr_name : std::to_string(state.st_gid);
   std::error_code error;
   const fs::path device = fs::canonical(path, error);
-  port.latency_timer =
-      read_of(fs::path("/sys/bus/usb-serial/devices") / device.filename() / "latency_timer");
+  port.latency_timer = recording::text_of(fs::path("/sys/bus/usb-serial/devices") /
+                                          device.filename() / "latency_timer");
   return port;
 }
 
@@ -180,7 +173,8 @@ std::vector<Finding> check_devices(const fs::path& devices) {
   };
   if (parts.needs_drive() && parts.drive == device_rig::Parts::Drive::kMoteusCan) {
     findings.push_back(check_can_interface(
-        config.drive.port, read_of(fs::path("/sys/class/net") / config.drive.port / "flags")));
+        config.drive.port,
+        recording::text_of(fs::path("/sys/class/net") / config.drive.port / "flags")));
   } else if (parts.needs_drive()) {
     check(config.drive.port, "drive.port");
   }
@@ -205,10 +199,12 @@ std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
       check_clock(clock_state()),
       check_real_time(granted),
       check_memory_lock(granted),
-      check_buffers(read_of(net / "core/rmem_max"), read_of(net / "core/wmem_max"), buffers),
+      check_buffers(recording::text_of(net / "core/rmem_max"),
+                    recording::text_of(net / "core/wmem_max"), buffers),
       check_ports(taken_ports_with_owners(ports.first, last)),
-      check_ephemeral_ports(read_of(net / "ipv4/ip_local_port_range"),
-                            read_of(net / "ipv4/ip_local_reserved_ports"), ports.first, last),
+      check_ephemeral_ports(recording::text_of(net / "ipv4/ip_local_port_range"),
+                            recording::text_of(net / "ipv4/ip_local_reserved_ports"), ports.first,
+                            last),
       check_governor(governors()),
       reachability_commands(inventory, host)};
   findings.push_back(check_security(inventory));

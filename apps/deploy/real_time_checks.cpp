@@ -7,12 +7,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <thread>
 
 #include "services/core/contract/tick.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "services/system/process/clock.hpp"
 #include "services/system/process/real_time.hpp"
 
@@ -32,18 +31,13 @@ std::optional<long> number_in(std::string_view text) {
   return value;
 }
 
-std::string text_of_file(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 std::vector<IdleState> idle_states() {
   std::vector<IdleState> states;
   std::error_code error;
   for (const auto& state : fs::directory_iterator("/sys/devices/system/cpu/cpu0/cpuidle", error)) {
     const fs::path folder = state.path();
-    states.push_back({text_of_file(folder / "name"), text_of_file(folder / "latency"),
-                      text_of_file(folder / "disable")});
+    states.push_back({recording::text_of(folder / "name"), recording::text_of(folder / "latency"),
+                      recording::text_of(folder / "disable")});
   }
   return states;
 }
@@ -55,8 +49,8 @@ std::vector<std::string> processors_of(fs::path device) {
   for (device = fs::canonical(device, error); device.has_relative_path() && processors.empty();
        device = device.parent_path()) {
     for (const auto& interrupt : fs::directory_iterator(device / "msi_irqs", error)) {
-      const std::string text = text_of_file(fs::path("/proc/irq") / interrupt.path().filename() /
-                                            "effective_affinity_list");
+      const std::string text = recording::text_of(
+          fs::path("/proc/irq") / interrupt.path().filename() / "effective_affinity_list");
       if (!text.empty()) processors.push_back(text.substr(0, text.find('\n')));
     }
   }
@@ -185,10 +179,10 @@ Finding check_wake_ups(std::optional<std::vector<double>> lateness_us) {
 std::vector<Finding> check_real_time_kernel() {
   const fs::path kernel = "/proc/sys/kernel";
   constexpr int kWakeUps = 2000;
-  return {check_preemption(text_of_file("/proc/version"),
-                           text_of_file("/sys/kernel/debug/sched/preempt")),
-          check_throttling(text_of_file(kernel / "sched_rt_runtime_us"),
-                           text_of_file(kernel / "sched_rt_period_us")),
+  return {check_preemption(recording::text_of("/proc/version"),
+                           recording::text_of("/sys/kernel/debug/sched/preempt")),
+          check_throttling(recording::text_of(kernel / "sched_rt_runtime_us"),
+                           recording::text_of(kernel / "sched_rt_period_us")),
           check_idle_states(idle_states()), check_interrupts(served_devices()),
           check_wake_ups(wake_ups(kWakeUps))};
 }

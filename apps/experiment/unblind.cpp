@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <istream>
 #include <optional>
-#include <stdexcept>
 
 #include "apps/experiment/folder/sealed_assignment.hpp"
 #include "apps/libraries/experiment/file/standing.hpp"
@@ -60,8 +59,7 @@ std::string unblind(const Folder& folder, const Unblinding& asked, std::istream&
                   .complete = static_cast<std::int64_t>(standing.complete.size())});
   const std::string text = opened_text(folder.design(), folder.assignment(), only);
   const auto place = only ? folder.participant(*only) : folder.path();
-  const auto written = recording::write_file_atomically((place / kOpenedFile).string(), text);
-  if (!written.ok()) throw std::runtime_error(written.text);
+  recording::write_file(place / kOpenedFile, text);
   return text;
 }
 

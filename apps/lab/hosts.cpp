@@ -114,8 +114,7 @@ void Hosts::open(const runtime::Stop& stop) {
     const std::string own = profiles.of(*inventory_, host);
     if (host.start.empty()) {
       local_.profiles = local_.out / "logs" / "profiles.xml";
-      const auto status = recording::write_file_atomically(local_.profiles.string(), own);
-      if (!status.ok()) throw std::runtime_error(status.text);
+      recording::write_file(local_.profiles, own);
       continue;
     }
     if (attach_) continue;  // its services have theirs

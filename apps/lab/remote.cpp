@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "services/system/process/clock.hpp"
 
 namespace stillhand::lab {
@@ -23,12 +22,6 @@ std::uintmax_t size_of(const std::filesystem::path& file) {
   std::error_code none;
   const std::uintmax_t size = std::filesystem::file_size(file, none);
   return none ? 0 : size;
-}
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
 }
 
 // The words that reach the host's shell, which reads its script from standard input.
@@ -115,7 +108,7 @@ void RemoteHost::open(const runtime::Stop& stop) {
                     "printf '\\nstillhand made %s\\n' \"$folder\"\n",
                     kFolder),
         {}, &stop);
-    made = folder_made(text_of(log_));
+    made = folder_made(recording::text_of(log_));
     if (made.empty()) throw std::runtime_error("no folder was made in /tmp");
   } catch (const Interrupted&) {
     throw;

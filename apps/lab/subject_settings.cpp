@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/subject_settings.hpp"
 
-#include <stdexcept>
 #include <string>
 
 #include "services/core/display/tracking_display.hpp"
@@ -16,17 +15,13 @@
 namespace stillhand::lab {
 namespace {
 
-void write_file(const std::filesystem::path& file, const std::string& text) {
-  const auto status = recording::write_file_atomically(file.string(), text);
-  if (!status.ok()) throw std::runtime_error(status.text);
-}
-
 void copy_settings(const std::filesystem::path& config, const std::filesystem::path& to) {
   std::filesystem::create_directories(to);
   if (std::filesystem::equivalent(config, to)) return;
   for (const auto& entry : std::filesystem::directory_iterator(config)) {
     if (entry.path().extension() != ".yaml") continue;
-    write_file(to / entry.path().filename(), recording::read_file(entry.path().string()));
+    recording::write_file(to / entry.path().filename(),
+                          recording::read_file(entry.path().string()));
   }
 }
 
@@ -40,8 +35,8 @@ void write_perturbed_settings(const std::filesystem::path& config, const std::fi
   rig.body = population::doing(rig.body, population::task_from(task));
   screen.reference_scale_m = 0.0;
   copy_settings(config, to);
-  write_file(to / "rig.yaml", settings::yaml_text(rig));
-  write_file(to / "display.yaml", settings::yaml_text(screen));
+  recording::write_file(to / "rig.yaml", settings::yaml_text(rig));
+  recording::write_file(to / "display.yaml", settings::yaml_text(screen));
 }
 
 void write_subject_settings(const std::filesystem::path& config, const std::filesystem::path& to,
@@ -55,8 +50,8 @@ void write_subject_settings(const std::filesystem::path& config, const std::file
   person.crossover = drawn.who;
   person.pointer.arm = population::learnt_feel(rig.body, rig.stick, person.pointer.arm);
   copy_settings(config, to);
-  write_file(to / "rig.yaml", settings::yaml_text(rig));
-  write_file(to / "human_operator.yaml", settings::yaml_text(person));
+  recording::write_file(to / "rig.yaml", settings::yaml_text(rig));
+  recording::write_file(to / "human_operator.yaml", settings::yaml_text(person));
 }
 
 }  // namespace stillhand::lab

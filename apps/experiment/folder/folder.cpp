@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <set>
-#include <stdexcept>
 
 #include "apps/experiment/folder/sealed_assignment.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
@@ -19,11 +18,6 @@ namespace stillhand::experiment {
 namespace {
 
 constexpr const char* kDigestFile = "experiment.sha256";
-
-void write_whole(const std::filesystem::path& file, const std::string& text) {
-  const auto status = recording::write_file_atomically(file.string(), text);
-  if (!status.ok()) throw std::runtime_error(status.text);
-}
 
 // A line of `sha256sum`.
 std::string digest_line(const std::string& digest, const std::string& name) {
@@ -211,7 +205,7 @@ void Folder::register_design() const {
     const std::string bytes = recording::read_file((path_ / model).string());
     lines += digest_line(rig::sha256(bytes), model);
   }
-  write_whole(path_ / kDigestFile, lines);
+  recording::write_file(path_ / kDigestFile, lines);
 }
 
 void Folder::open_participant(std::size_t index) const {
@@ -230,9 +224,9 @@ void make_folder(const std::filesystem::path& path, Design design, std::uint64_t
   const std::string sealed = sealed_text(order_seed);
   design.assignment = rig::sha256(sealed);
   const std::string yaml = yaml_of(design);
-  write_whole(path / kSealedFile, sealed);
-  write_whole(path / kDigestFile, digest_line(rig::sha256(yaml), kDesignFile));
-  write_whole(path / kDesignFile, yaml);  // last: it makes the folder an experiment
+  recording::write_file(path / kSealedFile, sealed);
+  recording::write_file(path / kDigestFile, digest_line(rig::sha256(yaml), kDesignFile));
+  recording::write_file(path / kDesignFile, yaml);  // last: it makes the folder an experiment
 }
 
 }  // namespace stillhand::experiment

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "apps/libraries/report/page_style.hpp"
 #include "apps/libraries/report/plot/svg.hpp"
@@ -213,9 +212,6 @@ std::string Page::html() const {
   return html + head_ + "</header>\n" + body_ + "</main>\n</body>\n</html>\n";
 }
 
-void Page::write(const std::filesystem::path& path) const {
-  const recording::Status status = recording::write_file_atomically(path.string(), html());
-  if (!status.ok()) throw std::runtime_error(status.text);
-}
+void Page::write(const std::filesystem::path& path) const { recording::write_file(path, html()); }
 
 }  // namespace stillhand::report

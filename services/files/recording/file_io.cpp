@@ -8,7 +8,9 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
 #include <system_error>
 
 #include "services/core/contract/config_error.hpp"
@@ -75,7 +77,7 @@ FileSource::FileSource(const std::string& path)
     // Without O_NONBLOCK, a pipe without a writer would block, and every signal is masked.
     : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
   if (descriptor_ < 0) throw ConfigError(path, reason(errno), "a file that can be read");
-  struct stat facts{};
+  struct stat facts = {};
   if (::fstat(descriptor_, &facts) != 0 || !S_ISREG(facts.st_mode)) {
     ::close(descriptor_);
     const auto session = std::filesystem::path(path) / "session.mcap";
@@ -89,7 +91,7 @@ FileSource::FileSource(const std::string& path)
 FileSource::~FileSource() { ::close(descriptor_); }
 
 bool FileSource::being_written() const {
-  struct stat facts{};
+  struct stat facts = {};
   if (::fstat(descriptor_, &facts) == 0 && static_cast<std::uint64_t>(facts.st_size) > size_) {
     return true;
   }
@@ -133,12 +135,22 @@ Status write_file_atomically(const std::string& path, std::string_view content) 
   return status;
 }
 
+void write_file(const std::filesystem::path& path, std::string_view content) {
+  const Status status = write_file_atomically(path.string(), content);
+  if (!status.ok()) throw std::runtime_error(status.text);
+}
+
 std::string read_file(const std::string& path) {
   FileSource source(path);
   std::string text(static_cast<std::size_t>(source.size()), '\0');
   const Status status = source.read_at(0, std::as_writable_bytes(std::span(text)));
   if (!status.ok()) throw ConfigError(path, status.text, "a file that can be read");
   return text;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 Recording read_csv(const std::string& path) { return parse_csv(read_file(path), path); }

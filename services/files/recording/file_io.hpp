@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -73,9 +74,13 @@ Status write_all(int descriptor, const std::string& path, std::span<const std::b
 /// a temporary file in the same folder, then calls fsync and rename.  After a failure the old file
 /// remains and the temporary file is removed.
 Status write_file_atomically(const std::string& path, std::string_view content);
+/// The same.  @throws std::runtime_error with the file and the reason where that fails
+void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// The whole file as text.  @throws ConfigError if it cannot be read.
 std::string read_file(const std::string& path);
+/// The same; empty if it cannot be read.  It may be one that the kernel makes, as in /proc.
+std::string text_of(const std::filesystem::path& file);
 
 /// parse_csv() of a file.  @throws ConfigError like read_file() and parse_csv().
 Recording read_csv(const std::string& path);

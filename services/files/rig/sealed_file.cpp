@@ -2,22 +2,11 @@
 #include "services/files/rig/sealed_file.hpp"
 
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
 
 namespace stillhand::rig {
-namespace {
-
-void write_whole(const std::filesystem::path& path, const std::string& text) {
-  if (const auto status = recording::write_file_atomically(path.string(), text); !status.ok()) {
-    throw std::runtime_error(status.text);
-  }
-}
-
-}  // namespace
-
 SealedSeed read_sealed_seed(std::istream& from) {
   SealedSeed sealed{};
   if (!(from >> sealed.seed >> sealed.nonce) || sealed.nonce.size() != 32) {
@@ -44,7 +33,7 @@ std::string sealed_text(const OpenedEffect& effect, const std::string& nonce) {
 }
 
 void commit_effect(const std::filesystem::path& folder, const std::string& text) {
-  write_whole(folder / kCommitmentFile, digest_line(text, kSealedFile));
+  recording::write_file(folder / kCommitmentFile, digest_line(text, kSealedFile));
 }
 
 void open_effect(const std::filesystem::path& folder, const std::string& text,
@@ -57,9 +46,9 @@ void open_effect(const std::filesystem::path& folder, const std::string& text,
   }
   if (!verdict_file.empty()) {
     const std::string verdict = recording::read_file((folder / verdict_file).string());
-    write_whole(commitment, line + digest_line(verdict, verdict_file));
+    recording::write_file(commitment, line + digest_line(verdict, verdict_file));
   }
-  write_whole(folder / kSealedFile, text);
+  recording::write_file(folder / kSealedFile, text);
 }
 
 }  // namespace stillhand::rig

@@ -65,11 +65,6 @@ void expect_whole(const Figure& figure, const std::string& svg, const std::strin
   }
 }
 
-void write_file(const std::filesystem::path& path, const std::string& content) {
-  const recording::Status status = recording::write_file_atomically(path.string(), content);
-  if (!status.ok()) throw std::runtime_error(status.text);
-}
-
 }  // namespace
 
 void require_gnuplot() {
@@ -100,9 +95,9 @@ std::vector<Drawing> render(std::span<const Figure> figures, const std::filesyst
   std::vector<Drawing> drawings = draw(figures);
   for (std::size_t i = 0; i < drawings.size(); ++i) {
     const std::vector<std::string> names = figure_files(drawings[i].name);
-    write_file(folder / names[0], drawings[i].svg);
-    write_file(folder / names[1], drawings[i].png);
-    write_file(folder / names[2], figure_table(figures[i]));
+    recording::write_file(folder / names[0], drawings[i].svg);
+    recording::write_file(folder / names[1], drawings[i].png);
+    recording::write_file(folder / names[2], figure_table(figures[i]));
   }
   return drawings;
 }
