@@ -10,6 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/identification/excitation_check.hpp"
 #include "services/core/identification/paper_preprocessing.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::identify {
 namespace {
@@ -58,7 +59,7 @@ std::vector<double> cut(const Channel& channel, const Stretch& stretch) {
 // The divisor of the input before the fit.
 double scale_of(const Channel& input, const std::vector<double>& values) {
   if (input.unit == "m/s^2") return 1.0;
-  const double rms = rms_about_mean(values);
+  const double rms = std::sqrt(signal::variance(values));
   return std::isnormal(rms) && std::isnormal(1.0 / rms) ? rms : 1.0;
 }
 
@@ -147,8 +148,8 @@ void fit(const identification::Record& recorded, const identification::Record& f
 // The model, Eq. ID-1, has no constant term.
 void note_offset(const Channel& channel, const std::vector<double>& values,
                  std::vector<std::string>& notes) {
-  const double mean = mean_of(values);
-  if (std::abs(mean) <= rms_about_mean(values)) return;
+  const double mean = signal::mean(values);
+  if (std::abs(mean) <= std::sqrt(signal::variance(values))) return;
   notes.push_back(
       fmt::format("{} has a mean of {:.4g} {}, larger than its variation; the paper's model has no "
                   "offset, so the mean distorts the fit.",
@@ -182,8 +183,9 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   out.source = measurement.source;
   out.input = input.name;
   out.input_unit = input.unit;
-  out.excited = diagnosis::excited_band(input.name, recorded.acceleration_m_s2,
-                                        mean_of(recorded.acceleration_m_s2), measurement.rate_hz);
+  out.excited =
+      diagnosis::excited_band(input.name, recorded.acceleration_m_s2,
+                              signal::mean(recorded.acceleration_m_s2), measurement.rate_hz);
   out.output = output.name;
   out.output_unit = output.unit;
   out.rate_hz = measurement.rate_hz;

@@ -13,6 +13,7 @@
 #include "services/core/diagnosis/detection/detection.hpp"
 #include "services/core/diagnosis/limit.hpp"
 #include "services/core/diagnosis/share_words.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::identify {
 namespace {
@@ -107,11 +108,12 @@ std::string why_stepped(const IdentifyOptions& options, const identification::Re
     const double enough = of_input ? diagnosis::kBetterClock : kBetterReading;
     if (!(least < enough * std::min(left, 1.0))) continue;
     const std::string what =
-        found.of_level ? fmt::format("the mean of {} is {:.3g} {} higher",
-                                     of_input ? options.input : options.output,
-                                     of_input ? found.level / rms_about_mean(y) : found.level,
-                                     of_input ? "times its RMS" : result.output_unit)
-                       : fmt::format("{} has {:.3g} times the gain", options.output, found.gain);
+        found.of_level
+            ? fmt::format("the mean of {} is {:.3g} {} higher",
+                          of_input ? options.input : options.output,
+                          of_input ? found.level / std::sqrt(signal::variance(y)) : found.level,
+                          of_input ? "times its RMS" : result.output_unit)
+            : fmt::format("{} has {:.3g} times the gain", options.output, found.gain);
     return fmt::format(
         "{} from {:.4g} to {:.4g} s of {:.4g} s, by a step or slowly: without that a model leaves "
         "{:.3g} % of {}, this one {:.3g} %{}",
@@ -172,21 +174,6 @@ std::string why_exchanged(const IdentifyOptions& options, const identification::
 
 }  // namespace
 
-double mean_of(const std::vector<double>& values) {
-  double mean = 0.0;
-  for (const double value : values) mean += value / static_cast<double>(values.size());
-  return mean;
-}
-
-double rms_about_mean(const std::vector<double>& values) {
-  const double mean = mean_of(values);
-  double squares = 0.0;
-  for (const double value : values) {
-    squares += (value - mean) * (value - mean) / static_cast<double>(values.size());
-  }
-  return std::sqrt(squares);
-}
-
 std::optional<NoModel> why_worthless(const Measurement& measurement, const IdentifyOptions& options,
                                      const identification::Record& fitted,
                                      const IdentifyResult& result) {
@@ -198,8 +185,9 @@ std::optional<NoModel> why_worthless(const Measurement& measurement, const Ident
   }
   const double left = 1.0 - 0.01 * result.model.heldout.free_run_vaf_percent;
   std::string mass = diagnosis::unlikely_mass(
-      {options.input, result.input_unit, rms_about_mean(fitted.acceleration_m_s2), options.output,
-       result.output_unit, std::sqrt(std::max(0.0, 1.0 - left)) * rms_about_mean(fitted.force_n),
+      {options.input, result.input_unit, std::sqrt(signal::variance(fitted.acceleration_m_s2)),
+       options.output, result.output_unit,
+       std::sqrt(std::max(0.0, 1.0 - left)) * std::sqrt(signal::variance(fitted.force_n)),
        options.heaviest_kg});
   if (left < 0.5 && !mass.empty()) return NoModel{"unit", std::move(mass)};
   if (std::string why = why_changed(options, fitted, result); !why.empty()) {

@@ -20,7 +20,4 @@ std::optional<diagnosis::NoModel> why_worthless(const diagnosis::Measurement& me
                                                 const identification::Record& fitted,
                                                 const IdentifyResult& result);
 
-double mean_of(const std::vector<double>& values);
-double rms_about_mean(const std::vector<double>& values);
-
 }  // namespace stillhand::identify

@@ -12,25 +12,13 @@
 #include "apps/libraries/report/or_null.hpp"
 #include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/share_words.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::predict {
 namespace {
 
 using nlohmann::ordered_json;
 using report::or_null;
-
-double mean_of(const std::vector<double>& x) {
-  double sum = 0.0;
-  for (const double value : x) sum += value;
-  return sum / static_cast<double>(x.size());
-}
-
-// About a level.
-double square_about(const std::vector<double>& x, double level) {
-  double sum = 0.0;
-  for (const double value : x) sum += (value - level) * (value - level);
-  return sum;
-}
 
 // The first tenth of each stretch of rows.
 std::vector<bool> starts_of(const std::vector<double>& time_s, double rate_hz) {
@@ -42,10 +30,6 @@ std::vector<bool> starts_of(const std::vector<double>& time_s, double rate_hz) {
     for (std::size_t n = first; n < first + (end - first) / 10; ++n) at_start[n] = true;
   }
   return at_start;
-}
-
-double rms_of(const std::vector<double>& x) {
-  return std::sqrt(square_about(x, 0.0) / static_cast<double>(x.size()));
 }
 
 Judged judged_against(const std::vector<double>& all, const std::vector<bool>& given,
@@ -60,13 +44,14 @@ Judged judged_against(const std::vector<double>& all, const std::vector<bool>& g
     residual.push_back(all[n] - predicted[n]);
     (at_start[n] ? start : rest).push_back(residual.back());
   }
-  const double square = square_about(residual, 0.0);
-  const double whole = square_about(measured, mean_of(measured));
+  const double square = signal::mean_square(residual);
+  const double whole = signal::variance(measured);
   const double not_known = std::numeric_limits<double>::quiet_NaN();
-  Score score{rms_of(residual), not_known, not_known, residual.size(), rms_of(start), rms_of(rest)};
+  Score score{signal::rms(residual), not_known,          not_known,
+              residual.size(),       signal::rms(start), signal::rms(rest)};
   // A constant output leaves rounding about its mean.
-  if (whole > 1e-18 * square_about(measured, 0.0)) {
-    score.vaf_percent = 100.0 * (1.0 - square_about(residual, mean_of(residual)) / whole);
+  if (whole > 1e-18 * signal::mean_square(measured)) {
+    score.vaf_percent = 100.0 * (1.0 - signal::variance(residual) / whole);
     score.fit_percent = 100.0 * (1.0 - std::sqrt(square / whole));
   }
   return {std::move(predicted), score};

@@ -12,6 +12,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/human_operator/fast_error.hpp"
 #include "services/core/population/population.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
@@ -87,12 +88,6 @@ double crossover_at_rest_hz(const TrialRun& trial, const human_operator::Crossov
   const double regressed = 1.0 + slowing / static_cast<double>(target.size());
   return std::isfinite(measured_hz) ? std::clamp(measured_hz * regressed, 0.05, 0.8)
                                     : who.crossover_hz;
-}
-
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double each : values) sum += each * each;
-  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 // The argument at which a falling function has the value.
@@ -178,8 +173,8 @@ void Repair::find_unexplained() {
     count += pegged_.signals.weight()[n];
   }
   // It grows with the motion: what no channel shows of it, and what the model misses.
-  const double quieter = rms(courses_.front().signals.at(body().inputs.front()).values) /
-                         rms(pegged_.signals.at(body().inputs.front()).values);
+  const double quieter = signal::rms(courses_.front().signals.at(body().inputs.front()).values) /
+                         signal::rms(pegged_.signals.at(body().inputs.front()).values);
   for (double& each : left) each = quieter * (each - mean / count);
   unexplained_n_ = at_1_khz(left, pegged_);
 }

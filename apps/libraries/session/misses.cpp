@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "apps/libraries/session/clock_line.hpp"
+#include "apps/libraries/session/core/trial_forces.hpp"
 #include "idl/topics.hpp"
 #include "services/core/contract/trial.hpp"
 
@@ -109,12 +110,6 @@ const Gap* inherited(const Gap& gap, const std::vector<Gap>& before) {
     return each.stream->topic == gap.stream->source && 2 * both_ns >= gap.until_ns - gap.from_ns;
   });
   return cause == before.end() ? nullptr : &*cause;
-}
-
-double rms(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 // Motor force for each newton of the prediction; 0: it is not the prediction's.

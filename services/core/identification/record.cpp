@@ -9,6 +9,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/expects.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::identification {
 namespace {
@@ -24,15 +25,6 @@ void check_finite(const std::vector<double>& samples, const std::string& channel
                         "a finite value, below 1e30 in size");
     }
   }
-}
-
-double variance(const std::vector<double>& samples) {
-  double mean = 0.0;
-  for (const double x : samples) mean += x;
-  mean /= static_cast<double>(samples.size());
-  double sum = 0.0;
-  for (const double x : samples) sum += (x - mean) * (x - mean);
-  return sum / static_cast<double>(samples.size());
 }
 
 // Prediction of each sample from the measured past, Eq. ID-1.
@@ -80,7 +72,7 @@ double vaf_percent(const std::vector<double>& measured, const std::vector<double
   STILLHAND_EXPECTS(measured.size() == predicted.size() && !measured.empty());
   std::vector<double> error(measured.size());
   for (std::size_t n = 0; n < error.size(); ++n) error[n] = measured[n] - predicted[n];
-  return 100.0 * (1.0 - variance(error) / variance(measured));
+  return 100.0 * (1.0 - signal::variance(error) / signal::variance(measured));
 }
 
 double rms_difference(const std::vector<double>& measured, const std::vector<double>& predicted) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/signal/moments.hpp"
 #include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::identification {
@@ -169,12 +170,6 @@ std::vector<double> moving_mean(const std::vector<double>& values, std::size_t w
   return out;
 }
 
-double mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
-
 }  // namespace
 
 TrackingMetrics tracking_metrics(const TrackingRecord& record,
@@ -190,8 +185,8 @@ TrackingMetrics tracking_metrics(const TrackingRecord& record,
     inside.push_back(std::abs(e) < config.box_half_width_m ? 1.0 : 0.0);
   }
   TrackingMetrics out;
-  out.rms_error_mm = std::sqrt(mean(squared_mm2));
-  out.dwell_ratio = mean(inside);
+  out.rms_error_mm = std::sqrt(signal::mean(squared_mm2));
+  out.dwell_ratio = signal::mean(inside);
   add_open_loop(out, record, error_m, design, config.fitted_lines);
   const auto window = static_cast<std::size_t>(std::lround(config.window_s * record.rate_hz));
   out.moving_rms_mm = moving_mean(squared_mm2, window);

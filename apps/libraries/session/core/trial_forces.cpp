@@ -6,7 +6,7 @@
 
 namespace stillhand::session {
 
-double rms(const std::vector<double>& values) noexcept {
+double rms(std::span<const double> values) noexcept {
   double sum = 0.0;
   for (const double value : values) sum += value * value;
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 namespace stillhand::session {
 
 /// Root mean square; 0 of nothing.
-double rms(const std::vector<double>& values) noexcept;
+double rms(std::span<const double> values) noexcept;
 
 /// Forces and motion of the hand over the measured ticks of a trial, from the truth of the rig.
 /// All vectors are equally long.

@@ -9,6 +9,7 @@
 #include "services/core/rig/parts/body.hpp"
 #include "services/core/rig/parts/body_response.hpp"
 #include "services/core/rig/parts/sensors.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::rig {
 namespace {
@@ -26,12 +27,6 @@ constexpr std::uint64_t kMotionStream = 0x66610003;
 constexpr double kIdentification_m_s2 = 0.75 * kGravity_m_s2 / 3.8;
 constexpr double kTracking_m_s2 = 1.6;
 
-double rms(const std::vector<double>& x) {
-  double sum = 0.0;
-  for (const double each : x) sum += each * each;
-  return std::sqrt(sum / static_cast<double>(x.size()));
-}
-
 }  // namespace
 
 PeggedTrial::PeggedTrial(const BodyConfig& body, const StickConfig& stick)
@@ -40,7 +35,7 @@ PeggedTrial::PeggedTrial(const BodyConfig& body, const StickConfig& stick)
   motion_m_s2_.reserve(kTicks);
   for (std::size_t n = 0; n < kTicks; ++n) motion_m_s2_.push_back(noise.step());
   plain_n_ = force_n({});
-  plain_rms_n_ = rms(plain_n_);
+  plain_rms_n_ = signal::rms(plain_n_);
 }
 
 std::vector<double> PeggedTrial::force_n(const ChainEffect& effect) const {
