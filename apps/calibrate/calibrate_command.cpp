@@ -39,31 +39,25 @@ void add_measures(CLI::App& calibrate, CalibrateOptions& options) {
   calibrate
       .add_option("--seconds", options.seconds,
                   "force, acceleration, angle: time for which each step is read [s]")
-      ->check(settings::number_between(0.1, 60.0))
-      ->capture_default_str();
+      ->check(settings::number_between(0.1, 60.0));
   calibrate
       .add_option("--tolerance", options.tolerance,
                   "force, acceleration, angle: largest distance from the straight line, and "
                   "largest drift, as a share of the largest quantity; more is refused [-]")
-      ->check(settings::number_between(0.0001, 0.5))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0001, 0.5));
   calibrate
       .add_option("--motion", options.motion_m,
                   "platform: largest distance from where it stands [m]")
-      ->check(settings::number_between(0.001, 0.1))
-      ->capture_default_str();
+      ->check(settings::number_between(0.001, 0.1));
   calibrate
       .add_option("--periods", options.periods, "platform: periods of 2 s that are measured [-]")
-      ->check(CLI::Range(2, 200))
-      ->capture_default_str();
+      ->check(CLI::Range(2, 200));
   calibrate
       .add_option("--push", options.push_n,
                   "check: weight that you hang on the cord, and largest force of the motor [N]")
-      ->check(settings::number_between(0.2, 5.0))
-      ->capture_default_str();
+      ->check(settings::number_between(0.2, 5.0));
   calibrate.add_option("--step", options.step_m, "check: step of the platform [m]")
-      ->check(settings::number_between(0.0005, 0.01))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0005, 0.01));
 }
 
 void say_following(const std::string& signal, const CalibrateOptions& options) {

@@ -180,17 +180,14 @@ void add_comparison_options(CLI::App& verb, const std::shared_ptr<Arguments>& ar
                   "trials of each condition, with other draws of target, motion and remnant; with "
                   "--live one")
       ->check(CLI::Range(1, 1000))
-      ->excludes(live)
-      ->capture_default_str();
+      ->excludes(live);
   verb.add_option(
           "--subject", arguments->lab.subject,
           "number of the subject that `stillhand study --seed` draws; 0: the one in the settings")
-      ->check(CLI::Range(0, 10000))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 10000));
   verb.add_option("--threads", arguments->threads,
                   "number of threads; the results do not depend on it; 0: one per core")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 256));
 }
 
 }  // namespace
@@ -215,27 +212,20 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
       verb->add_option(
               "--undeclared-effect", lab.undeclared_effect,
               "seed of an effect that only the rig knows, revealed after the verdict; 0: none")
-          ->check(session::check_seed)
-          ->capture_default_str();
+          ->check(session::check_seed);
   CLI::Option* seed =
       verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
-          ->check(session::check_seed)
-          ->capture_default_str();
+          ->check(session::check_seed);
   verb->add_option("--out", lab.out, "folder of report, figures and numbers")->required();
   CLI::Option* trial =
-      verb->add_option("--trial-seconds", lab.protocol.trial_s, "length of a tracking trial [s]")
-          ->capture_default_str();
+      verb->add_option("--trial-seconds", lab.protocol.trial_s, "length of a tracking trial [s]");
   CLI::Option* identify = verb->add_option("--identify-seconds", lab.protocol.identify_s,
-                                           "length of the pegged trial [s]; the paper's is 120")
-                              ->capture_default_str();
+                                           "length of the pegged trial [s]; the paper's is 120");
   CLI::Option* live =
       verb->add_flag("--live", arguments->live,
                      "over DDS, with every process, in real time; the recording is kept");
-  verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")
-      ->needs(live)
-      ->capture_default_str();
-  verb->add_option("--rig", lab.rig, "number of the rig on the bus, which the model names")
-      ->capture_default_str();
+  verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")->needs(live);
+  verb->add_option("--rig", lab.rig, "number of the rig on the bus, which the model names");
   add_comparison_options(*verb, arguments, effect, live);
   diagnose::add_diagnose_options(*verb, arguments->recorded.diagnose);
   arguments->recorded.declared = declared_drive(session::CoreConfigs{}.rig);

@@ -148,16 +148,13 @@ void add_control_model_command(CLI::App& cli, int& status) {
   verb->add_option("--json", arguments->json,
                    "file of what becomes of each effect, with the difference of its force")
       ->check(settings::check_name);
-  verb->add_option("--rig", arguments->rig, "number of the rig that the model is for")
-      ->capture_default_str();
+  verb->add_option("--rig", arguments->rig, "number of the rig that the model is for");
   verb->add_option("--lead-ms", arguments->lead_ms,
                    "delay of the motor [ms]; the model predicts this time ahead")
-      ->check(settings::number_between(0.0, 100.0))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0, 100.0));
   verb->add_flag("--as-it-is", arguments->as_it_is, "gain and phase do not adapt while it runs");
   verb->add_option("--config", arguments->config,
-                   "folder with the settings of each service: the canceller's bounds")
-      ->capture_default_str();
+                   "folder with the settings of each service: the canceller's bounds");
   verb->callback([arguments, &status] { status = run(*arguments); });
 }
 

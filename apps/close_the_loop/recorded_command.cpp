@@ -85,11 +85,9 @@ void add_recorded_options(CLI::App& verb, RecordedOptions& options,
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->needs(pegged)
-      ->capture_default_str()
       ->group("From recordings");
   verb.add_option("--output", options.diagnose.output, "channel that the model predicts")
       ->needs(pegged)
-      ->capture_default_str()
       ->group("From recordings");
   for (CLI::Option* option : measurement::add_read_options(verb, options.read)) {
     option->needs(pegged);

@@ -22,11 +22,9 @@ void add_dashboard_command(CLI::App& cli, int& status) {
       "is healthy and, if not, where and since when. The dashboard is outside of every session:\n"
       "no session waits for it or ends with it. Ends with Ctrl-C.\n"
       "Example: stillhand dashboard --port 8340, then open http://127.0.0.1:8340/");
-  verb->add_option("--port", options->server.port, "TCP port; 0: any free port")
-      ->capture_default_str();
+  verb->add_option("--port", options->server.port, "TCP port; 0: any free port");
   verb->add_option("--bind", options->server.address,
-                   "address to listen on; an address other than loopback requires --token-file")
-      ->capture_default_str();
+                   "address to listen on; an address other than loopback requires --token-file");
   verb->add_option("--token-file", options->token_file,
                    "file with a token, for watching and acting; a browser shows the token once, "
                    "as /?token=...")
@@ -44,12 +42,11 @@ void add_dashboard_command(CLI::App& cli, int& status) {
                  "no buttons; send nothing to a session or a recorder");
   verb->add_flag("!--no-real-time", options->real_time,
                  "do not request SCHED_FIFO for the receiving threads");
-  verb->add_option("--rig", options->rig, "rig that the page shows in full")->capture_default_str();
-  verb->add_option("--domain", options->bus.domain, "DDS domain, 0 to 232")->capture_default_str();
+  verb->add_option("--rig", options->rig, "rig that the page shows in full");
+  verb->add_option("--domain", options->bus.domain, "DDS domain, 0 to 232");
   verb->add_option("--config", options->config,
-                   "folder with dashboard.yaml and the settings of the services")
-      ->capture_default_str();
-  verb->add_option("--profiles", options->bus.profiles, "QoS profiles")->capture_default_str();
+                   "folder with dashboard.yaml and the settings of the services");
+  verb->add_option("--profiles", options->bus.profiles, "QoS profiles");
   verb->add_option(
           "--security", options->bus.security,
           "folder of certificates (deploy/security/make.sh): the verb listens with the certificate "

@@ -137,8 +137,7 @@ void add_deploy_command(CLI::App& cli, int& status) {
                     "YAML file with the services of each machine")
         ->required();
     sub->add_option("--profiles", arguments->profiles,
-                    "QoS profiles from which the lab's profiles are made")
-        ->capture_default_str();
+                    "QoS profiles from which the lab's profiles are made");
   };
   CLI::App* make = verb->add_subcommand(
       "generate",

@@ -226,6 +226,7 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   verb->add_option("--stability", arguments->stability,
                    "repeat the diagnosis this many times, a fifth of the recording left out at "
                    "random, and count the verdicts [0: no repetition]")
+      ->default_str("")
       ->check(CLI::Range(0, 1000));
   verb->add_option("--plan", arguments->plan,
                    "plan.json of `stillhand plan-run`: the last REC is its run, and the verb says "
@@ -237,8 +238,7 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   verb->add_option("--config", arguments->config,
                    "folder of the settings that a session ran with, to split what its motor left "
                    "into causes")
-      ->check(settings::check_name)
-      ->capture_default_str();
+      ->check(settings::check_name);
   measurement::add_heaviest_option(*verb, arguments->options.heaviest_kg);
   verb->add_option("--save", arguments->save,
                    "file for the diagnosed model, for `stillhand predict`")

@@ -15,10 +15,8 @@ void add_recordings(CLI::App& verb, std::vector<std::string>& recordings,
   verb.add_option("--input", options.inputs, "inputs of the model: channel(s), comma-separated")
       ->delimiter(',')
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1)
-      ->capture_default_str();
-  verb.add_option("--output", options.output, "channel that the model predicts")
-      ->capture_default_str();
+      ->expected(1);
+  verb.add_option("--output", options.output, "channel that the model predicts");
   add_diagnose_options(verb, options);
   verb.add_option("--trial", read.trial,
                   "trial of a session's recording: its number, or the letter of its condition");
@@ -54,17 +52,14 @@ void add_diagnose_options(CLI::App& verb, diagnosis::DiagnoseOptions& options) {
       ->check(CLI::IsMember({"auto", "arx", "linear"}))
       ->default_str("auto");
   verb.add_option("--order", options.order, "order of the difference model")
-      ->check(CLI::Range(1, 12))
-      ->capture_default_str();
+      ->check(CLI::Range(1, 12));
   verb.add_option("--most-effects", options.search.most_effects,
                   "stop after this many effects; 0: the baseline alone")
-      ->check(CLI::Range(0, 8))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 8));
   verb.add_option("--least-force", options.least_force_n,
                   "smallest RMS force of an effect that counts [N]; the default moves the cursor "
                   "by 0.8 mm. If the output has another unit, every effect counts")
-      ->check(settings::number_between(0.0, kMostForce_n))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0, kMostForce_n));
 }
 
 }  // namespace stillhand::diagnose

@@ -135,24 +135,17 @@ void exclude(const Typed& typed) {
 void add_new(CLI::App& verb, const std::shared_ptr<Typed>& typed) {
   CLI::App* sub = subcommand(verb, "new", "Makes the folder and its experiment.yaml.", *typed);
   Design& design = typed->design;
-  sub->add_option("--title", design.title, "title")->capture_default_str();
+  sub->add_option("--title", design.title, "title");
   sub->add_option("--conditions", typed->conditions,
-                  "comma-separated: " + session::known_conditions(session::kExperimentConditions))
-      ->capture_default_str();
-  sub->add_option("--participants", design.participants, "planned number")->capture_default_str();
+                  "comma-separated: " + session::known_conditions(session::kExperimentConditions));
+  sub->add_option("--participants", design.participants, "planned number");
   sub->add_option("--order", typed->order, "orders of the trials")
-      ->type_name("{random,latin,williams}")
-      ->capture_default_str();
-  sub->add_option("--blocks", design.blocks, "blocks")->capture_default_str();
-  sub->add_option("--trials", design.trials, "trials of each condition in a block")
-      ->capture_default_str();
-  sub->add_option("--trial-seconds", design.trial_s, "length of a trial [s]")
-      ->capture_default_str();
-  sub->add_option("--identify-seconds", design.identify_s, "length of the pegged trial [s]")
-      ->capture_default_str();
-  sub->add_option("--operator", design.who, "who tracks")
-      ->type_name("{simulated,mouse,gamepad}")
-      ->capture_default_str();
+      ->type_name("{random,latin,williams}");
+  sub->add_option("--blocks", design.blocks, "blocks");
+  sub->add_option("--trials", design.trials, "trials of each condition in a block");
+  sub->add_option("--trial-seconds", design.trial_s, "length of a trial [s]");
+  sub->add_option("--identify-seconds", design.identify_s, "length of the pegged trial [s]");
+  sub->add_option("--operator", design.who, "who tracks")->type_name("{simulated,mouse,gamepad}");
   sub->add_option("--control-model", typed->control_model,
                   "model of condition C+, copied into the folder; `stillhand close-the-loop` and "
                   "`stillhand control-model` write such a file. diagnosed: each session's own, in "
@@ -178,12 +171,10 @@ void add_run(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
          "place of the protocol: it is no step of it")
       ->needs("--participant")
       ->check(CLI::ExistingFile);
-  sub->add_option("--domain", lab.domain, "DDS domain, 0 to 232")->capture_default_str();
-  sub->add_option("--config", lab.config, "folder with the settings of each service")
-      ->capture_default_str();
+  sub->add_option("--domain", lab.domain, "DDS domain, 0 to 232");
+  sub->add_option("--config", lab.config, "folder with the settings of each service");
   sub->add_option("--match-seconds", lab.match_s,
-                  "longest wait until all processes have found each other [s]")
-      ->capture_default_str();
+                  "longest wait until all processes have found each other [s]");
   sub->add_option("--gamepad", lab.gamepad,
                   "input device, for example /dev/input/event5, if the operator is gamepad")
       ->check(settings::check_name);

@@ -107,16 +107,13 @@ void add_identify_command(CLI::App& cli, int& status) {
       "'force=f [N]'");
   verb->add_option("REC", arguments->recording, "recording")->required();
   verb->add_option("--order", arguments->identify.config.order, "order of the model")
-      ->check(CLI::Range(1, 12))
-      ->capture_default_str();
+      ->check(CLI::Range(1, 12));
   verb->add_flag("--refine", arguments->identify.config.refine,
                  "refine the fit on its free-run error (the model predicts from the input alone); "
                  "the verb does "
                  "so by itself if the fit is unstable");
-  verb->add_option("--input", arguments->identify.input, "input channel of the model")
-      ->capture_default_str();
-  verb->add_option("--output", arguments->identify.output, "output channel of the model")
-      ->capture_default_str();
+  verb->add_option("--input", arguments->identify.input, "input channel of the model");
+  verb->add_option("--output", arguments->identify.output, "output channel of the model");
   verb->add_option(
       "--trial", arguments->read.trial,
       "trial of a session: number, or letter of its condition (I, A, B, C) [identification]");
@@ -133,8 +130,7 @@ void add_identify_command(CLI::App& cli, int& status) {
       "feedthrough of the free stick with 95 % bands, and a physical model of the arm");
   verb->add_option("--lever-m", arguments->lever_m,
                    "with --admittance: distance from hand to pivot [m]")
-      ->check(settings::number_between(0.02, 0.5))
-      ->capture_default_str();
+      ->check(settings::number_between(0.02, 0.5));
   verb->add_option("--picture", arguments->picture, "with --admittance: PNG file for the responses")
       ->check(settings::check_name);
   verb->add_option(

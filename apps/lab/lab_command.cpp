@@ -105,17 +105,14 @@ void take_rig(const std::vector<std::string>& arguments, LabOptions& options) {
 // The trials and the person or model that tracks.
 void add_trial_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
   lab.add_option("--conditions", arguments.conditions,
-                 "comma-separated: " + session::known_conditions(session::kLabConditions))
-      ->capture_default_str();
+                 "comma-separated: " + session::known_conditions(session::kLabConditions));
   lab.add_option("--arms", arguments.arms,
                  "for the condition scheduled: the person's arm, relaxed and holding; two files of "
                  "`stillhand identify --admittance --json`, comma-separated")
       ->delimiter(',');
-  lab.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
-      ->capture_default_str();
+  lab.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]");
   lab.add_option("--identify-seconds", options.protocol.identify_s,
-                 "length of the pegged trial [s]; the paper's is 120")
-      ->capture_default_str();
+                 "length of the pegged trial [s]; the paper's is 120");
   lab.add_option(
          "--identify", arguments.identify,
          "admittance,feedthrough: instead of the conditions, one trial in which motor and platform "
@@ -140,20 +137,17 @@ void add_trial_options(CLI::App& lab, LabOptions& options, LabArguments& argumen
                "with --identify: motor and platform exchange their frequencies; for `identify "
                "--admittance --swapped`");
   lab.add_option("--seed", options.protocol.seed, "seed of everything random")
-      ->check(session::check_seed)
-      ->capture_default_str();
+      ->check(session::check_seed);
   lab.add_option("--operator", arguments.who,
                  "who tracks: a simulated subject, or a person's mouse or gamepad")
-      ->check(CLI::IsMember({"simulated", "mouse", "gamepad"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"simulated", "mouse", "gamepad"}));
   lab.add_option("--gamepad", options.gamepad,
                  "for --operator gamepad: input device such as /dev/input/event5")
       ->check(settings::check_name);
   lab.add_option("--subject", options.subject,
                  "number of the simulated subject that `stillhand study --seed` draws; 0: the one "
                  "in the settings")
-      ->check(CLI::Range(0, 10000))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 10000));
   lab.add_flag("--wait-for-start", options.wait_for_start,
                "each trial waits until a person presses Start on the dashboard");
 }
@@ -161,8 +155,7 @@ void add_trial_options(CLI::App& lab, LabOptions& options, LabArguments& argumen
 void add_motion_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
   lab.add_option("--motion", arguments.motion,
                  "platform motion in B and C: noise (the paper's), road (ISO 8608), or ride")
-      ->check(CLI::IsMember({"noise", "road", "ride"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"noise", "road", "ride"}));
   lab.add_option("--ride", options.ride,
                  "recorded ride for --motion ride: CSV with a_y [m/s^2], or .mcap")
       ->check(settings::check_name);
@@ -179,7 +172,7 @@ void add_motion_options(CLI::App& lab, LabOptions& options, LabArguments& argume
   CLI::Option* canceller = lab.add_option("--canceller", options.canceller,
                                           "canceller of condition C: now (1 kHz), or paper (50 Hz, "
                                           "after the paper's low-pass of 10 Hz, one sample late)");
-  canceller->check(CLI::IsMember({"now", "paper"}))->capture_default_str();
+  canceller->check(CLI::IsMember({"now", "paper"}));
   lab.add_option("--model", options.model,
                  "control model for condition C, instead of the session's own; `stillhand "
                  "close-the-loop` and `stillhand control-model` write such a file")
@@ -210,7 +203,6 @@ void add_output_options(CLI::App& lab, LabOptions& options) {
 // The machines, the bus and the services.
 void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
   CLI::Option* domain = lab.add_option("--domain", options.domain, "DDS domain, 0 to 232");
-  domain->capture_default_str();
   CLI::Option* inventory = lab.add_option(
       "--inventory", options.inventory,
       "file with the lab's machines and the services of each, the same as for `stillhand "
@@ -227,12 +219,9 @@ void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments
                      "`stillhand calibrate` first); or another file like devices.yaml [simulated]. "
                      "A number is the rig's number on the bus [1]. Both may be given"));
   lab.add_option("--match-seconds", options.match_s,
-                 "longest wait until all processes have found each other [s]")
-      ->capture_default_str();
-  lab.add_option("--profiles", options.profiles, "file with the QoS profiles")
-      ->capture_default_str();
-  lab.add_option("--config", options.config, "folder with the settings of each service")
-      ->capture_default_str();
+                 "longest wait until all processes have found each other [s]");
+  lab.add_option("--profiles", options.profiles, "file with the QoS profiles");
+  lab.add_option("--config", options.config, "folder with the settings of each service");
   lab.add_flag("--attach", options.attach,
                "start no service: conduct the services that systemd started with --one-session, "
                "and fetch their recording")

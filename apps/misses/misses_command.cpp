@@ -134,8 +134,7 @@ void add_misses_command(CLI::App& cli, int& status) {
       "stillhand misses run1/session.mcap --picture late.svg");
   verb->add_option("FILE", arguments->recording, "recording of a session (MCAP)")->required();
   verb->add_option("--least-ms", arguments->least_ms, "shortest lateness that is listed [ms]")
-      ->check(settings::number_between(1.0, 1e4))
-      ->capture_default_str();
+      ->check(settings::number_between(1.0, 1e4));
   verb->add_flag("--why", arguments->why,
                  "also what the kernel knows: no processor, a signal, work, memory from a disk");
   verb->add_option("--json", arguments->json, "write the same as JSON to this file");

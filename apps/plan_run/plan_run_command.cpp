@@ -150,15 +150,13 @@ void add_plan_run_command(CLI::App& cli, int& status) {
       "stillhand plan-run run1/session.mcap --seconds 30 --out next");
   diagnose::add_recordings(*verb, arguments->recordings, arguments->read, arguments->options);
   verb->add_option("--seconds", arguments->seconds, "length of the run [s]")
-      ->check(settings::number_between(next_run::kShortest_s, next_run::kLongest_s))
-      ->capture_default_str();
+      ->check(settings::number_between(next_run::kShortest_s, next_run::kLongest_s));
   verb->add_option("--out", arguments->out, "folder for ride.csv, plan.json and plan.svg")
       ->required()
       ->check(settings::check_name);
   verb->add_option("--config", arguments->config,
                    "folder with the settings of each service; motion.yaml holds the platform's "
-                   "limits")
-      ->capture_default_str();
+                   "limits");
   verb->callback([arguments, &status] { status = run(*arguments); });
 }
 

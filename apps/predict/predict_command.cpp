@@ -135,6 +135,7 @@ void add_predict_command(CLI::App& cli, int& status) {
   verb->add_option("--start-from-output", arguments->start_samples,
                    "rows at the start of REC whose measured output gives the model's state there; "
                    "the scores leave them out [0: the state comes from the inputs]")
+      ->default_str("")
       ->check(CLI::Range(0, 1000000));
   verb->add_option(
           "--json", arguments->json,

@@ -84,14 +84,18 @@ void add_record_command(CLI::App& cli, int& status) {
   settings::repeatable(verb->add_option(
       "--idl", options.idl, "IDL file with types that the bus does not describe; may be repeated"));
   verb->add_option("--duration", arguments->duration_s, "end after this time [s]")
+      ->default_str("")
       ->check(settings::number_between(0.001, kMostSeconds));
   verb->add_option("--rotate-s", arguments->rotate_s, "continue in a new file after this time [s]")
+      ->default_str("")
       ->check(settings::number_between(0.1, kMostSeconds));
   verb->add_option("--rotate-mb", arguments->rotate_mb,
                    "continue in a new file after this size [MB]")
+      ->default_str("")
       ->check(settings::number_between(0.1, kMostMb));
   verb->add_option("--window", arguments->window_s,
                    "event window: keep the last seconds in memory and write them at a trigger [s]")
+      ->default_str("")
       ->check(settings::number_between(0.1, 3600.0));
   settings::repeatable(
       verb->add_option("--trigger", options.triggers,
@@ -104,8 +108,8 @@ void add_record_command(CLI::App& cli, int& status) {
                    "do not record; send this to the recorders of the domain")
       ->type_name("{pause,resume,trigger,stop}");
   verb->add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
-  verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
-  verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
+  verb->add_option("--domain", options.domain, "DDS domain, 0 to 232");
+  verb->add_option("--profiles", options.profiles, "QoS profiles");
   verb->add_option(
           "--security", options.security,
           "folder of certificates (deploy/security/make.sh); the verb uses that of the tap "

@@ -141,8 +141,7 @@ void add_recover(CLI::App& cli, int& status) {
   verb->add_option("--out", arguments->options.out, "file to write; it must not exist yet");
   verb->add_option("--compression", arguments->compression,
                    "compression of the chunks: zstd, lz4 or none")
-      ->check(CLI::IsMember({"zstd", "lz4", "none"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"zstd", "lz4", "none"}));
   verb->callback([arguments, &status] { status = run_recover(*arguments); });
 }
 

@@ -71,8 +71,7 @@ void add_replay_command(CLI::App& cli, int& status) {
       "loop start, b loop end, c loop off; q quit.\n"
       "Example: stillhand replay run/session.mcap --domain 7 --topics stillhand/sensed --rate 0.5");
   verb->add_option("REC", options.file, "MCAP recording");
-  verb->add_option("--rate", arguments->rate, "speed relative to the recording, 0.1 to 100")
-      ->capture_default_str();
+  verb->add_option("--rate", arguments->rate, "speed relative to the recording, 0.1 to 100");
   settings::repeatable(verb->add_option(
       "--topics", options.topics.allow,
       "pattern of topics to play (* any run of characters, ? one); may be repeated"));
@@ -83,8 +82,10 @@ void add_replay_command(CLI::App& cli, int& status) {
                        "RECORDED=WRITTEN: write a topic under another name; may be repeated"));
   verb->add_option("--start", arguments->start_s,
                    "begin at this time [s] after the recording's start")
+      ->default_str("")
       ->check(settings::number_between(0.0, kMostSeconds));
   verb->add_option("--end", arguments->end_s, "end at this time [s] after the recording's start")
+      ->default_str("")
       ->check(settings::number_between(0.0, kMostSeconds));
   verb->add_flag("--loop", options.loop, "play again from the start when the end is reached");
   verb->add_flag("--paused", options.begin_paused, "begin paused");
@@ -92,15 +93,14 @@ void add_replay_command(CLI::App& cli, int& status) {
       verb->add_option("--wait-for", options.wait_for,
                        "topic that must have a reader before the replay begins; may be repeated"));
   verb->add_option("--wait-seconds", arguments->wait_s, "longest wait of --wait-for [s]")
-      ->check(settings::number_between(0.0, kMostSeconds))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0, kMostSeconds));
   verb->add_option("--remote", arguments->remote,
                    "do not play; send this to the replay of the domain; or \"seek S\", \"rate R\", "
                    "\"loop S S\"")
       ->type_name("{play,pause,step,stop,loop-off}");
   verb->add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
-  verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
-  verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
+  verb->add_option("--domain", options.domain, "DDS domain, 0 to 232");
+  verb->add_option("--profiles", options.profiles, "QoS profiles");
   verb->callback([arguments, &status] { status = run(*arguments); });
 }
 

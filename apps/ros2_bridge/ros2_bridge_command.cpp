@@ -51,17 +51,14 @@ void add_ros2_bridge_command(CLI::App& cli, int& status) {
   verb->add_flag("--replay", options->replay,
                  "publish what `stillhand replay` plays, in the place of a session");
   verb->add_option("--domain", options->domain, "DDS domain of the session")
-      ->check(settings::number_between(0.0, runtime::kMaxDomain))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0, runtime::kMaxDomain));
   verb->add_option("--ros-domain", options->ros_domain, "domain of ROS 2")
       ->envname("ROS_DOMAIN_ID")
-      ->check(settings::number_between(0.0, runtime::kMaxDomain))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0, runtime::kMaxDomain));
   settings::repeatable(verb->add_option("--ros-address", options->addresses,
                                         "address of this machine on which ROS 2 is reached, "
                                         "besides 127.0.0.1; may be repeated"));
-  verb->add_option("--profiles", options->profiles, "QoS profiles of the session")
-      ->capture_default_str();
+  verb->add_option("--profiles", options->profiles, "QoS profiles of the session");
   verb->add_option("--security", options->security,
                    "folder of certificates for a secured domain; what ROS 2 gets is not secured");
   verb->callback([options, &status] { status = run(*options); });

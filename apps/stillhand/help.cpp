@@ -121,7 +121,8 @@ class Help final : public CLI::Formatter {
     const std::string check = type.substr(std::min(colon + 1, type.size()));
     std::string text = " " + (check.starts_with("{") ? check : type.substr(0, colon));
     if (option->get_expected_max() > 1) text += " ...";
-    if (!option->get_default_str().empty()) text += "=" + option->get_default_str();
+    const std::string& usual = option->get_default_str();
+    if (!usual.empty() && usual != "[]") text += "=" + usual;  // []: a list, empty
     if (const auto in = check.find(" in ["); in != std::string::npos) {
       std::string bounds = check.substr(in + 5, check.find(']', in) - in - 5);
       if (const auto dash = bounds.find(" - "); dash != std::string::npos) {

@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
   cli.require_subcommand(1);
   // A script gives its defaults first and the user's words after them: the last word counts.
   cli.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  cli.option_defaults()->always_capture_default();  // --help shows it
   int status = 0;
   try {
     stillhand::lab::add_lab_command(cli, status);

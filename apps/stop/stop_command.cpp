@@ -28,10 +28,8 @@ void add_stop_command(CLI::App& cli, int& status) {
                    "folder of keys (deploy/security/make.sh), for a session with keys")
       ->check(settings::check_name);
   stop->add_option("--wait", options->wait_s, "longest wait for the rigs' answers [s]")
-      ->check(settings::number_between(2.0, 60.0))
-      ->capture_default_str();
-  stop->add_option("--profiles", options->profiles, "file with the QoS profiles")
-      ->capture_default_str();
+      ->check(settings::number_between(2.0, 60.0));
+  stop->add_option("--profiles", options->profiles, "file with the QoS profiles");
   stop->callback([options, &status] {
     const runtime::Stop interrupted;
     status = run_stop(*options, interrupted);

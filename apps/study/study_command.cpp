@@ -96,33 +96,24 @@ int explain(const StudyRecord& record, const Arguments& arguments, bool subjects
 
 // Conditions, lengths and seed.
 void add_protocol_options(CLI::App& study, StudyOptions& options, Arguments& arguments) {
-  study.add_option("--seed", options.seed, "seed of everything random")
-      ->check(session::check_seed)
-      ->capture_default_str();
-  study
-      .add_option("--conditions", arguments.conditions,
-                  "comma-separated: " + session::known_conditions(session::kStudyConditions))
-      ->capture_default_str();
+  study.add_option("--seed", options.seed, "seed of everything random")->check(session::check_seed);
+  study.add_option("--conditions", arguments.conditions,
+                   "comma-separated: " + session::known_conditions(session::kStudyConditions));
   study
       .add_option("--canceller", options.canceller,
                   "canceller of condition C: now (1 kHz), or paper (50 Hz, after the paper's "
                   "low-pass of 10 Hz, one sample late)")
-      ->check(CLI::IsMember({"now", "paper"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"now", "paper"}));
   study.add_flag("--wrong-models", options.wrong_models,
                  "run C again with another subject's model and with the mean model of all others");
-  study.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
-      ->capture_default_str();
-  study
-      .add_option("--identify-seconds", options.protocol.identify_s,
-                  "length of the pegged trial [s]")
-      ->capture_default_str();
+  study.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]");
+  study.add_option("--identify-seconds", options.protocol.identify_s,
+                   "length of the pegged trial [s]");
 }
 
 // Subjects and their rigs.
 void add_subject_options(CLI::App& study, StudyOptions& options, Arguments& arguments) {
-  study.add_option("--subjects", options.subjects, "number of subjects; the paper has 12")
-      ->capture_default_str();
+  study.add_option("--subjects", options.subjects, "number of subjects; the paper has 12");
   study
       .add_option("--population", arguments.population,
                   "file with the population's distributions; deploy/experiments/population.yaml "
@@ -131,20 +122,17 @@ void add_subject_options(CLI::App& study, StudyOptions& options, Arguments& argu
   study
       .add_option("--stick-damping", options.damped_stick_n_s_m,
                   "condition E: damping added to the stick [N s/m]")
-      ->check(settings::number_between(0.0, 49.0))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0, 49.0));
   study
       .add_option("--motor-delay", options.motor.delay_s,
                   "motor.delay_s of every rig [s]: delay from a command to the motor's current")
-      ->check(settings::number_between(0.0, 0.2))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0, 0.2));
   study
       .add_option(
           "--answer-wait", options.motor.answer_wait_s,
           "motor.answer_wait_s of every rig [s]; 0: a motor command is used at the beginning "
           "of the next tick")
-      ->check(settings::number_between(0.0, 0.0007))
-      ->capture_default_str();
+      ->check(settings::number_between(0.0, 0.0007));
   study
       .add_option("--undeclared-effect", options.undeclared_effect,
                   "seed of an effect that only the rigs hold, revealed with the results; 0: none")
@@ -183,8 +171,7 @@ void add_study_command(CLI::App& cli, int& status) {
   study
       ->add_option("--threads", record->options.threads,
                    "number of threads, 0: one per core; the results do not depend on it")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 256));
   study
       ->add_option("--explain-paper", arguments->explain_paper,
                    "instead of a study: look for causes of the paper's means in C (means), of the "

@@ -72,28 +72,22 @@ void add_vehicle_command(CLI::App& cli, int& status) {
       ->required()
       ->check(settings::check_name);
   verb->add_option("--preset", options.preset, "vehicle")
-      ->type_name("{first_order,second_order,excavator,wheelchair,aircraft_roll}")
-      ->capture_default_str();
+      ->type_name("{first_order,second_order,excavator,wheelchair,aircraft_roll}");
   verb->add_option("--subjects", options.subjects, "number of simulated subjects")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+      ->check(CLI::Range(1, 1000));
   verb->add_option("--seed", options.seed, "of everything random")
-      ->check(CLI::Range(0, 2'000'000'000))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 2'000'000'000));
   verb->add_option("--gains", options.gains_m_s2_rad,
                    "gains of the grid [m/s^2 per rad], rising, 0.1 to 100; 17 from 4 to 100 if "
                    "none is given")
       ->delimiter(',');
   verb->add_option("--delays", options.delays_s, "delays of the grid [s], rising, 0.02 to 1")
-      ->delimiter(',')
-      ->capture_default_str();
+      ->delimiter(',');
   verb->add_option("--drive-seconds", options.drive_s, "length of each drive [s]")
-      ->check(settings::number_between(6.0, 600.0))
-      ->capture_default_str();
+      ->check(settings::number_between(6.0, 600.0));
   verb->add_option("--threads", options.threads,
                    "number of threads, 0: one per core; the results do not depend on it")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 256));
   verb->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -113,8 +113,7 @@ void add_export_command(CLI::App& verb) {
   sub->add_flag("--hdf5", options->hdf5, "the same tables as one HDF5 file");
   sub->add_option("--license", options->release.licence,
                   "licence of the data set, for example CC0-1.0 or CC-BY-4.0")
-      ->check(settings::check_name)
-      ->capture_default_str();
+      ->check(settings::check_name);
   sub->add_option("--author", options->release.authors, "author of the data set; may be repeated")
       ->allow_extra_args(false);
   sub->callback([options] { export_set(*options); });

@@ -81,7 +81,6 @@ void add_heaviest_option(CLI::App& verb, double& heaviest_kg) {
                   "mass [kg] that a force in N may show over an acceleration in m/s^2: more is "
                   "taken for a wrong unit. State it for a machine, such as a shaking table")
       ->check(settings::number_between(0.01, 1e7))
-      ->capture_default_str()
       ->group(kGroup);
 }
 
