@@ -306,33 +306,4 @@ ArmFit fit_arm(const LineEstimates& estimates) {
   return with.reflex ? with : without;
 }
 
-ArmFit fit_pegged_arm(const std::vector<LineResponse>& feedthrough, std::int64_t neighbours) {
-  LineEstimates estimates;
-  estimates.feedthrough_to_force = feedthrough;
-  estimates.feedthrough_to_position.resize(feedthrough.size());
-  estimates.position_force_covariance.resize(feedthrough.size());
-  double chi2 = 0.0;
-  return fitted_to(lines_of(estimates), parameters(false), {mean_arm(), soft_arm()},
-                   static_cast<double>(neighbours), chi2);
-}
-
-ArmValues least_standard_errors(const LineEstimates& estimates, const ArmValues& truth,
-                                bool reflex) {
-  const std::vector<Line> lines = lines_of(estimates);
-  const std::vector<ArmParameter> unknown = parameters(reflex);
-  const auto nu = static_cast<double>(estimates.neighbours);
-  check_count(lines.size(), unknown.size(), nu);
-  const Problem problem(lines, unknown, truth);
-  double condition = 0.0;
-  // 1/C of nu lines is nu/(nu - 1) too large in the mean.
-  const Eigen::MatrixXd covariance =
-      nu / (nu - 1.0) * inverse_information(problem.slopes(problem.numbers(truth)), condition);
-  ArmValues out{};
-  for (std::size_t i = 0; i < unknown.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    out[unknown[i]] = std::sqrt(covariance(row, row)) * slope_at(unknown[i], truth[unknown[i]]);
-  }
-  return out;
-}
-
 }  // namespace stillhand::admittance

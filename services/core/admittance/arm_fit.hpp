@@ -39,13 +39,4 @@ ArmValues mean_arm() noexcept;
 ///         not positive.
 ArmFit fit_arm(const LineEstimates& lines);
 
-/// The same to the feedthrough of a pegged stick alone, e_k = F/A - H, without a reflex: all that
-/// pegged identification knows of the arm.
-/// @param neighbours  nu of the estimate, LineEstimates::neighbours
-ArmFit fit_pegged_arm(const std::vector<LineResponse>& feedthrough, std::int64_t neighbours);
-
-/// Cramer-Rao bound: standard errors at the true arm for lines with these variances, Eq. AD-14
-/// without its loss.  The reflex counts as unknown where `reflex`.
-ArmValues least_standard_errors(const LineEstimates& lines, const ArmValues& truth, bool reflex);
-
 }  // namespace stillhand::admittance

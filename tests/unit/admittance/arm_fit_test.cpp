@@ -105,25 +105,10 @@ TEST(ArmFitTest, LeavesOutAReflexThatIsNotThere) {
   EXPECT_EQ(sut.fitted.size(), 9u);
 }
 
-// Of a pegged stick: the feedthrough alone does not determine the arm.
-TEST(ArmFitTest, SaysWhatAPeggedStickDoesNotDetermine) {
-  const Excitation excitation = design({.rate_hz = kFitRate_hz});
-  const ArmValues truth = arm_of(simulated::drawn_arm(5, 0));
-  std::vector<LineResponse> pegged;
-  for (const auto& component : excitation.motion.components()) {
-    LineResponse line;
-    line.frequency_hz = static_cast<double>(component.harmonic) / 20.0;
-    line.response = arm_response(truth, line.frequency_hz).feedthrough;
-    line.variance = 1e-4 * std::norm(line.response);
-    pegged.push_back(line);
-  }
-  const ArmFit sut = fit_pegged_arm(pegged, 14);
-  EXPECT_FALSE(sut.undetermined.empty());
-  EXPECT_GT(sut.condition, 100.0);
-}
-
 TEST(ArmFitTest, RefusesLinesWithoutAVariance) {
-  EXPECT_THAT([] { fit_pegged_arm(std::vector<LineResponse>(20), 14); },
+  LineEstimates sut;
+  sut.admittance.resize(20);
+  EXPECT_THAT([&] { fit_arm(sut); },
               testing::ThrowsMessage<ConfigError>(testing::HasSubstr("positive finite variance")));
 }
 
