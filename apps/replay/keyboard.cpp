@@ -5,8 +5,11 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <ctime>
 #include <string_view>
+#include <utility>
 
 namespace stillhand::replay {
 namespace {
@@ -17,26 +20,16 @@ std::optional<Key> key_of(std::string_view bytes) {
   if (bytes.empty()) return std::nullopt;
   if (bytes == "\033[D" || bytes == "\033OD") return Key::kBack;
   if (bytes == "\033[C" || bytes == "\033OC") return Key::kForward;
-  switch (bytes.front()) {
-    case ' ':
-      return Key::kPause;
-    case 's':
-      return Key::kStep;
-    case 'q':
-      return Key::kQuit;
-    case '+':
-      return Key::kFaster;
-    case '-':
-      return Key::kSlower;
-    case 'a':
-      return Key::kLoopFrom;
-    case 'b':
-      return Key::kLoopTo;
-    case 'c':
-      return Key::kLoopOff;
-    default:
-      return std::nullopt;
-  }
+  constexpr std::array<std::pair<char, Key>, 8> kKeys{{{' ', Key::kPause},
+                                                       {'s', Key::kStep},
+                                                       {'q', Key::kQuit},
+                                                       {'+', Key::kFaster},
+                                                       {'-', Key::kSlower},
+                                                       {'a', Key::kLoopFrom},
+                                                       {'b', Key::kLoopTo},
+                                                       {'c', Key::kLoopOff}}};
+  const auto key = std::ranges::find(kKeys, bytes.front(), &std::pair<char, Key>::first);
+  return key == kKeys.end() ? std::nullopt : std::optional(key->second);
 }
 
 }  // namespace

@@ -1,30 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/device_rig/arming.hpp"
 
+#include <array>
+#include <cstddef>
+
 namespace stillhand::device_rig {
 
 const char* text_of(Reason reason) noexcept {
-  switch (reason) {
-    case Reason::kNone:
-      return "";
-    case Reason::kSilent:
-      return "the drive is silent";
-    case Reason::kTimedOut:
-      return "the drive's watchdog tripped";
-    case Reason::kFault:
-      return "the drive reports a fault";
-    case Reason::kOff:
-      return "the drive went off by itself";
-    case Reason::kOtherMode:
-      return "the drive is in a mode that Stillhand does not command";
-    case Reason::kNotArmed:
-      return "the drive does not follow";
-    case Reason::kUnchecked:
-      return "the drive was away or started again; its settings are not read back";
-    case Reason::kEncoder:
-      return "the angle of the drive jumped";
-  }
-  return "";
+  // In the order of Reason.
+  constexpr std::array kTexts{"",
+                              "the drive is silent",
+                              "the drive's watchdog tripped",
+                              "the drive reports a fault",
+                              "the drive went off by itself",
+                              "the drive is in a mode that Stillhand does not command",
+                              "the drive does not follow",
+                              "the drive was away or started again; its settings are not read back",
+                              "the angle of the drive jumped"};
+  static_assert(kTexts.size() == static_cast<std::size_t>(Reason::kEncoder) + 1);
+  return kTexts[static_cast<std::size_t>(reason)];
 }
 
 Arming::Output Arming::step(const Input& input) noexcept {

@@ -2,6 +2,7 @@
 #include "services/devices/device_rig/platform_drive.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace stillhand::device_rig {
@@ -14,23 +15,16 @@ constexpr double kStands_m = 0.001;
 }  // namespace
 
 const char* text_of(SeatReason reason) noexcept {
-  switch (reason) {
-    case SeatReason::kNone:
-      return "";
-    case SeatReason::kSilent:
-      return "the platform is silent";
-    case SeatReason::kFault:
-      return "the platform reports a fault";
-    case SeatReason::kOff:
-      return "the platform stopped following by itself";
-    case SeatReason::kStranger:
-      return "the platform follows another program";
-    case SeatReason::kLate:
-      return "the platform was not engaged when the trial began";
-    case SeatReason::kOutside:
-      return "the platform stands outside of its travel";
-  }
-  return "";
+  // In the order of SeatReason.
+  constexpr std::array kTexts{"",
+                              "the platform is silent",
+                              "the platform reports a fault",
+                              "the platform stopped following by itself",
+                              "the platform follows another program",
+                              "the platform was not engaged when the trial began",
+                              "the platform stands outside of its travel"};
+  static_assert(kTexts.size() == static_cast<std::size_t>(SeatReason::kOutside) + 1);
+  return kTexts[static_cast<std::size_t>(reason)];
 }
 
 double PlatformDrive::within_travel(double position_m) const noexcept {
