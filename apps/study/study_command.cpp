@@ -172,42 +172,34 @@ void add_study_command(CLI::App& cli, int& status) {
       ->add_option("--threads", record->options.threads,
                    "number of threads, 0: one per core; the results do not depend on it")
       ->check(CLI::Range(0, 256));
-  study
-      ->add_option("--explain-paper", arguments->explain_paper,
-                   "instead of a study: look for causes of the paper's means in C (means), of the "
-                   "spread between its people (spread), or of both (all, or nothing)")
-      ->expected(0, 1)
-      ->default_str(kAll)
-      ->check(CLI::IsMember({kAll, kMeans, kSpread}))
-      ->excludes("--population")
-      ->excludes("--conditions")
-      ->excludes("--canceller")
-      ->excludes("--wrong-models")
-      ->excludes("--motor-delay")
-      ->excludes("--answer-wait")
-      ->excludes("--undeclared-effect");
-  study
-      ->add_flag("--calibrate", arguments->calibrate,
-                 "instead of a study: calibrate the population to A and B of the paper's Table I, "
-                 "and write it to the file --out")
-      ->excludes("--explain-paper")
-      ->excludes("--conditions")
-      ->excludes("--canceller")
-      ->excludes("--wrong-models")
-      ->excludes("--motor-delay")
-      ->excludes("--answer-wait")
-      ->excludes("--undeclared-effect");
+  CLI::Option* explaining =
+      study
+          ->add_option(
+              "--explain-paper", arguments->explain_paper,
+              "instead of a study: look for causes of the paper's means in C (means), of the "
+              "spread between its people (spread), or of both (all, or nothing)")
+          ->expected(0, 1)
+          ->default_str(kAll)
+          ->check(CLI::IsMember({kAll, kMeans, kSpread}))
+          ->excludes("--population");
+  CLI::Option* calibrating =
+      study
+          ->add_flag(
+              "--calibrate", arguments->calibrate,
+              "instead of a study: calibrate the population to A and B of the paper's Table I, "
+              "and write it to the file --out")
+          ->excludes(explaining);
   CLI::Option* mitigations = study->add_option(
       "--mitigations", arguments->campaign.mitigations,
       "instead of a study: the table of mitigations, each in every task and "
       "motion, with the own, the average and another subject's model; 48 subjects "
       "and trials of 60 s by default. comma-separated: " +
           session::known_conditions(session::kMitigations));
-  for (const char* name :
-       {"--conditions", "--canceller", "--wrong-models", "--stick-damping", "--motor-delay",
-        "--answer-wait", "--undeclared-effect", "--explain-paper", "--calibrate"}) {
-    mitigations->excludes(name);
+  for (const char* name : {"--conditions", "--canceller", "--wrong-models", "--motor-delay",
+                           "--answer-wait", "--undeclared-effect"}) {
+    for (CLI::Option* instead : {explaining, calibrating, mitigations}) instead->excludes(name);
   }
+  mitigations->excludes("--stick-damping")->excludes(explaining)->excludes(calibrating);
   add_sessions_option(*study, *arguments);
   add_plan_options(*study, record->plan_dz);
   add_people_options(*study, *record);
