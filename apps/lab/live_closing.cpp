@@ -2,12 +2,16 @@
 #include "apps/lab/live_closing.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
+#include <string>
 
 #include "apps/lab/pause_diagnosis.hpp"
-#include "apps/lab/typed_line.hpp"
 #include "services/core/contract/config_error.hpp"
 
 namespace stillhand::lab {
@@ -22,6 +26,35 @@ bool lost_its_model(const session::TrialOutcome& outcome) {
            return !session::model_change(mark, outcome.planned.trial).empty();
          });
 }
+
+// The next line that a person types at the terminal; nothing waits for it.
+class TypedLine {
+ public:
+  // Standard input is a terminal.  It stops a program in its background that reads it, or takes
+  // away what was typed.
+  static bool possible() {
+    const pid_t in_front = tcgetpgrp(STDIN_FILENO);  // -1: not the terminal of this session
+    return isatty(STDIN_FILENO) != 0 && (in_front < 0 || in_front == getpgrp());
+  }
+  // What was typed before does not count.
+  TypedLine() { tcflush(STDIN_FILENO, TCIFLUSH); }
+
+  // A terminal hands over whole lines.  One that is gone has no more of them.
+  bool is_there() {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (poll(&input, 1, 0) <= 0) return false;
+    std::array<char, 256> typed{};
+    const ssize_t size = read(STDIN_FILENO, typed.data(), typed.size());
+    if (size > 0) text_.assign(typed.data(), static_cast<std::size_t>(size));
+    if (text_.ends_with('\n')) text_.pop_back();
+    return true;
+  }
+  // Without its end.
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
+ private:
+  std::string text_;
+};
 
 }  // namespace
 
