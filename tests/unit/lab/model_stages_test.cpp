@@ -22,30 +22,22 @@ TEST_F(ModelWaitTest, IsOverWithTheUsableModelOfItsTrial) {
   EXPECT_FALSE(sut_.over());
   seen_.model = {0, true, ""};
   step(sut_);
-  EXPECT_TRUE(sut_.over());
-  EXPECT_THAT(sut_.failure(), IsEmpty());
+  EXPECT_EQ(failure_of(sut_), "");
 }
 
 TEST_F(ModelWaitTest, AModelThatIsNotUsableIsAFailureWithItsReason) {
   seen_.model = {0, false, "VAF 12 %"};
   step(sut_);
-  EXPECT_TRUE(sut_.over());
-  EXPECT_EQ(sut_.failure(), "no usable model, a longer --identify-seconds helps: VAF 12 %");
+  EXPECT_EQ(failure_of(sut_), "no usable model, a longer --identify-seconds helps: VAF 12 %");
 }
 
 TEST_F(ModelWaitTest, AModelThatIsLateIsAFailureAfterAMinute) {
-  step(sut_);
-  step(sut_, 60 * kSecond);
-  EXPECT_FALSE(sut_.over());
-  step(sut_, 1);
-  EXPECT_TRUE(sut_.over());
-  EXPECT_EQ(sut_.failure(), "identification gave no model within 60 s");
+  EXPECT_EQ(failure_after(sut_, 60 * kSecond), "identification gave no model within 60 s");
 }
 
 TEST_F(ModelWaitTest, AProcessThatEndsIsTheReason) {
   end_of_process({"identification (pid 7) ended: signal 9 (Killed)", false, false}, sut_);
-  EXPECT_TRUE(sut_.over());
-  EXPECT_EQ(sut_.failure(), "identification (pid 7) ended: signal 9 (Killed)");
+  EXPECT_EQ(failure_of(sut_), "identification (pid 7) ended: signal 9 (Killed)");
 }
 
 TEST_F(ModelWaitTest, AnEmergencyStopIsTheReason) {
@@ -65,15 +57,13 @@ TEST_F(RecordingWaitTest, IsOverWhenTheDiskHasTheTrialAndNotAnEarlierOne) {
   EXPECT_FALSE(sut_.over());
   seen_.recorded_tick = 550;
   step(sut_);
-  EXPECT_TRUE(sut_.over());
-  EXPECT_THAT(sut_.failure(), IsEmpty());
+  EXPECT_EQ(failure_of(sut_), "");
 }
 
 TEST_F(RecordingWaitTest, ADiskThatIsTooSlowIsAFailure) {
   step(sut_);
   step(sut_, 10 * kSecond + 1);
-  EXPECT_TRUE(sut_.over());
-  EXPECT_EQ(sut_.failure(), "the recorder's disk did not have the trial within 10 s");
+  EXPECT_EQ(failure_of(sut_), "the recorder's disk did not have the trial within 10 s");
 }
 
 TEST_F(RecordingWaitTest, ARecorderThatEndsIsTheReason) {
@@ -95,8 +85,7 @@ TEST_F(ModelUseTest, GivesTheModelWithNoticeAndIsOverWhenItIsLoaded) {
   EXPECT_FALSE(sut_.over());
   event(EventKind::kModelLoaded, "cancellation");
   step(sut_);
-  EXPECT_TRUE(sut_.over());
-  EXPECT_THAT(sut_.failure(), IsEmpty());
+  EXPECT_EQ(failure_of(sut_), "");
   EXPECT_THAT(sut_.refusal(), IsEmpty());
 }
 
@@ -110,12 +99,7 @@ TEST_F(ModelUseTest, ARefusalIsAnAnswerWithItsReason) {
 }
 
 TEST_F(ModelUseTest, NoAnswerIsAFailureAfterFiveSeconds) {
-  step(sut_);
-  step(sut_, 5 * kSecond);
-  EXPECT_FALSE(sut_.over());
-  step(sut_, 1);
-  EXPECT_TRUE(sut_.over());
-  EXPECT_EQ(sut_.failure(), "the canceller did not answer within 5 s");
+  EXPECT_EQ(failure_after(sut_, 5 * kSecond), "the canceller did not answer within 5 s");
 }
 
 }  // namespace

@@ -31,6 +31,18 @@ class StageTest : public testing::Test {
     now_ns_ += after_ns;
     return stage.step(seen_, now_ns_);
   }
+  /// Why a stage failed; empty: it is over without a failure.
+  static std::string failure_of(const auto& sut) {
+    return sut.over() ? sut.failure() : "it goes on";
+  }
+  /// Nothing has come by its limit, nor a nanosecond later.  @return the failure
+  std::string failure_after(auto& sut, std::int64_t limit_ns) {
+    step(sut);
+    step(sut, limit_ns);
+    EXPECT_FALSE(sut.over());
+    step(sut, 1);
+    return failure_of(sut);
+  }
   /// A process ends, and the time is over after which that counts.
   void end_of_process(const Death& death, Stage& stage) {
     seen_.ended = death;

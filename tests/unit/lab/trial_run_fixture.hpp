@@ -36,6 +36,11 @@ class TrialRunTest : public StageTest {
     step(301 * kMs);
   }
   [[nodiscard]] const TrialResult& result() const { return sut_->result(); }
+  /// "completed", or why the trial ended before its last tick.
+  [[nodiscard]] std::string ending() const {
+    if (!sut_->over()) return "it goes on";
+    return result().completed ? "completed" : result().aborted;
+  }
 
   Trial planned_{2, TrialPhase::kTracking, 0, 5000, 2000};
   std::unique_ptr<TrialRun> sut_;

@@ -28,8 +28,7 @@ TEST_F(TrialRunTest, IsAssignedAndAnnouncedASecondAheadAndCompletedAtItsLastTick
   EXPECT_FALSE(sut_->over());
   rig_at(kEnd);
   EXPECT_FALSE(step().announce.has_value());
-  ASSERT_TRUE(sut_->over());
-  EXPECT_TRUE(result().completed);
+  EXPECT_EQ(ending(), "completed");
   EXPECT_FALSE(result().stopped);
   EXPECT_THAT(result().aborted, IsEmpty());
   EXPECT_EQ(result().trial.start_tick, kStart);
@@ -57,8 +56,7 @@ TEST_F(TrialRunTest, ATrialForWhichNotEverybodyIsPreparedBeginsLaterAndSaysSo) {
   step();
   rig_at(later.announce->trial->start_tick + 7000);
   step();
-  ASSERT_TRUE(sut_->over());
-  EXPECT_TRUE(result().completed);
+  EXPECT_EQ(ending(), "completed");
   EXPECT_EQ(result().trial.start_tick, later.announce->trial->start_tick);
 }
 
@@ -111,8 +109,7 @@ TEST_F(TrialRunTest, ATrialIsOverWhenItsEndIsRecorded) {
   EXPECT_FALSE(sut_->over());
   seen_.processes["recorder"].tick = kEnd;
   step();
-  EXPECT_TRUE(sut_->over());
-  EXPECT_TRUE(result().completed);
+  EXPECT_EQ(ending(), "completed");
 }
 
 // Its life sign comes from another thread than its work.
@@ -129,10 +126,8 @@ TEST_F(TrialRunTest, AProcessThatStandsStillEndsTheTrialAndIsNamed) {
   ASSERT_TRUE(actions.announce);
   EXPECT_FALSE(actions.announce->trial);  // command and motion end at their sources
   pass_afterwards();
-  ASSERT_TRUE(sut_->over());
-  EXPECT_FALSE(result().completed);
   EXPECT_FALSE(result().stopped);
-  EXPECT_EQ(result().aborted, "cancellation stands still: its newest tick is 6000, the rig's 7001");
+  EXPECT_EQ(ending(), "cancellation stands still: its newest tick is 6000, the rig's 7001");
 }
 
 TEST_F(TrialRunTest, ASampleClockThatStandsStillEndsTheTrial) {
@@ -141,9 +136,7 @@ TEST_F(TrialRunTest, ASampleClockThatStandsStillEndsTheTrial) {
   EXPECT_FALSE(sut_->over());
   step();
   pass_afterwards();
-  ASSERT_TRUE(sut_->over());
-  EXPECT_FALSE(result().completed);
-  EXPECT_EQ(result().aborted, "rig stands still: no tick for 4 s");
+  EXPECT_EQ(ending(), "rig stands still: no tick for 4 s");
 }
 
 TEST_F(TrialRunTest, APeggedTrialIsCalledIdentification) {
@@ -191,17 +184,14 @@ TEST_F(TrialRunTest, AnInterruptionEndsAPauseBeforeTheTrial) {
   event(EventKind::kOther, "rig");
   seen_.interrupted = true;
   step();
-  ASSERT_TRUE(sut_->over());
-  EXPECT_EQ(result().aborted, "interrupted");
-  EXPECT_FALSE(result().completed);
+  EXPECT_EQ(ending(), "interrupted");
   EXPECT_THAT(result().events, IsEmpty());
 }
 
 TEST_F(TrialRunTest, AnEmergencyStopBeforeTheTrialKeepsItFromBeginning) {
   ask(Action::kEmergencyStop);
   EXPECT_FALSE(step().assign.has_value());
-  ASSERT_TRUE(sut_->over());
-  EXPECT_EQ(result().aborted, "emergency stop, asked by desk");
+  EXPECT_EQ(ending(), "emergency stop, asked by desk");
 }
 
 TEST_F(TrialRunTest, AProcessThatIsNotPreparedInTimeIsNamedWithItsNotes) {
@@ -215,9 +205,7 @@ TEST_F(TrialRunTest, AProcessThatIsNotPreparedInTimeIsNamedWithItsNotes) {
   EXPECT_FALSE(sut_->over());
   rig_at(10'000);
   step(51 * kMs);
-  ASSERT_TRUE(sut_->over());
-  EXPECT_FALSE(result().completed);
-  EXPECT_EQ(result().aborted,
+  EXPECT_EQ(ending(),
             "cancellation was not prepared within 10 s (model gain is above the bound); "
             "human_operator was not prepared within 10 s");
 }
@@ -242,9 +230,7 @@ TEST_F(TrialRunTest, AProcessThatIsPreparedAndStandsStillIsWaitedForAndThenNamed
   EXPECT_FALSE(sut_->over());
   seen_.processes["rig"].tick = 15'000;
   step(1 * kSecond + 1);
-  ASSERT_TRUE(sut_->over());
-  EXPECT_EQ(result().aborted,
-            "cancellation stands still: its newest tick is 3000, the rig's 15000");
+  EXPECT_EQ(ending(), "cancellation stands still: its newest tick is 3000, the rig's 15000");
 }
 
 TEST_F(TrialRunTest, AProcessThatStandsStillIsNamedInThePlaceOfThoseThatWaitForItsSamples) {
@@ -255,9 +241,7 @@ TEST_F(TrialRunTest, AProcessThatStandsStillIsNamedInThePlaceOfThoseThatWaitForI
   seen_.processes["human_operator"].armed_trial = 1;
   seen_.processes["rig"].tick = 15'000;
   step(10 * kSecond + 1);
-  ASSERT_TRUE(sut_->over());
-  EXPECT_EQ(result().aborted,
-            "cancellation stands still: its newest tick is 3000, the rig's 15000");
+  EXPECT_EQ(ending(), "cancellation stands still: its newest tick is 3000, the rig's 15000");
 }
 
 TEST_F(TrialRunTest, AProcessThatIsNotOnTheBusIsNotPrepared) {
@@ -268,15 +252,13 @@ TEST_F(TrialRunTest, AProcessThatIsNotOnTheBusIsNotPrepared) {
   seen_.processes.erase("cancellation");
   rig_at(10'000);
   step(10 * kSecond + 1);
-  ASSERT_TRUE(sut_->over());
-  EXPECT_EQ(result().aborted, "cancellation has handled no tick, the rig's is 10000");
+  EXPECT_EQ(ending(), "cancellation has handled no tick, the rig's is 10000");
 }
 
 TEST_F(TrialRunTest, AProcessThatEndsWhileOthersPrepareIsTheReason) {
   step();
   end_of_process({"display (pid 7) ended: signal 9 (Killed)", false, false}, *sut_);
-  ASSERT_TRUE(sut_->over());
-  EXPECT_EQ(result().aborted, "display (pid 7) ended: signal 9 (Killed)");
+  EXPECT_EQ(ending(), "display (pid 7) ended: signal 9 (Killed)");
 }
 
 TEST_F(TrialRunTest, AnInterlockThatOpensWhileOthersPrepareIsTheReason) {
@@ -289,9 +271,7 @@ TEST_F(TrialRunTest, AnInterlockThatOpensWhileOthersPrepareIsTheReason) {
   EXPECT_FALSE(opened.announce->trial.has_value());
   EXPECT_FALSE(sut_->over());  // its end may be seen later
   step(3 * kSecond + 1);
-  ASSERT_TRUE(sut_->over());
-  EXPECT_FALSE(result().completed);
-  EXPECT_EQ(result().aborted, "rig: a process is missing: sensing");
+  EXPECT_EQ(ending(), "rig: a process is missing: sensing");
 }
 
 }  // namespace
