@@ -153,24 +153,24 @@ say("};")
 power_of <- function(dz, n, alpha)
   power.t.test(n = n, delta = dz, sd = 1, sig.level = alpha, type = "paired", strict = TRUE)$power
 say("struct PowerRow {")
-say("  double dz; int subjects; double alpha, power;")
+say("  double dz; int subjects; double power[3];  // of alpha = 0.05, 0.01, 0.001")
 say("};")
-rows <- list()
-for (dz in c(0.1, 0.2, 0.5, 0.8, 1.2, 2.5)) for (n in c(2, 3, 12, 50, 500)) for (alpha in c(0.05, 0.01, 0.001))
-  rows <- c(rows, list(c(dz, n, alpha, power_of(dz, n, alpha))))
-table_of("PowerRow", "kPowers", rows)
+say("inline constexpr PowerRow kPowers[] = {")
+for (dz in c(0.1, 0.2, 0.5, 0.8, 1.2, 2.5)) for (n in c(2, 3, 12, 50, 500))
+  say("    {", number(dz), ", ", n, ", ", row_text(sapply(c(0.05, 0.01, 0.001), function(a) power_of(dz, n, a))), "},")
+say("};")
 say("struct SubjectsRow {")
-say("  double dz, power, alpha; int subjects;")
+say("  double dz, power; int subjects[2];  // of alpha = 0.05, 0.01")
 say("};")
 smallest <- function(dz, power, alpha) {
   n <- 2
   while (power_of(dz, n, alpha) < power) n <- n + 1
   n
 }
-rows <- list()
-for (dz in c(0.1, 0.2, 0.5, 0.8, 1.2, 2.5, 6)) for (power in c(0.8, 0.9, 0.99)) for (alpha in c(0.05, 0.01))
-  rows <- c(rows, list(c(dz, power, alpha, smallest(dz, power, alpha))))
-table_of("SubjectsRow", "kSubjects", rows)
+say("inline constexpr SubjectsRow kSubjects[] = {")
+for (dz in c(0.1, 0.2, 0.5, 0.8, 1.2, 2.5, 6)) for (power in c(0.8, 0.9, 0.99))
+  say("    {", number(dz), ", ", power, ", ", row_text(sapply(c(0.05, 0.01), function(a) smallest(dz, power, a))), "},")
+say("};")
 
 # Several tests: p.adjust.
 p <- c(0.012, 1e-12, 0.04, 0.04, 0.0047, 4.05e-6, 0.73, 1, 0, 0.03, 5.67e-7, 0.5)
