@@ -188,20 +188,21 @@ TEST(EvaluateTest, OnlyCompletedTrackingTrialsAreEvaluated) {
   EXPECT_TRUE(evaluate(path, {}).trials.empty());
 }
 
-// f' of the body, and a motor that takes off `share` of it `late` ticks late.
-void force(Tape& tape, double share, Tick late) {
-  const auto feedthrough_n = [](Tick tick) { return -3.2 * acceleration_m_s2(tick); };
-  for (Tick tick = kStart; tick < kEnd; ++tick) {
-    tape.truth(tick, feedthrough_n(tick), -share * feedthrough_n(tick - late));
+// A whole trial with f' of the body, and a motor that takes off `share` of it `late` ticks late.
+struct ForcedTape : Tape {
+  ForcedTape(double share, Tick late) {
+    whole_tracking(kStart, kEnd, 0.0);
+    const auto feedthrough_n = [](Tick tick) { return -3.2 * acceleration_m_s2(tick); };
+    for (Tick tick = kStart; tick < kEnd; ++tick) {
+      truth(tick, feedthrough_n(tick), -share * feedthrough_n(tick - late));
+    }
   }
-}
+};
 
 // The force of a damper answers the stick: how late it opposes f' means nothing.
 TEST(EvaluateTest, OnlyACounterforceHasADelay) {
   using cancellation::PartKind;
-  Tape tape;
-  tape.whole_tracking(kStart, kEnd, 0.0);
-  force(tape, 0.8, 3);
+  ForcedTape tape(0.8, 3);
   const std::string path = tape.close();
   const auto delays = [&](const std::vector<cancellation::Part>& parts) {
     TrialOutcome outcome = outcome_of(1, Condition::kDampingForce, kStart);
@@ -245,9 +246,7 @@ TEST(EvaluateTest, TheExcerptIsAroundTheLossOfTheModel) {
 
 TEST(EvaluateTest, TheCancelledShareIsThePartThatTheMotorRemoves) {
   for (const double share : {0.0, 0.25, 1.0, 1.5}) {
-    Tape tape;
-    tape.whole_tracking(kStart, kEnd, 0.0);
-    force(tape, share, 0);
+    ForcedTape tape(share, 0);
     const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
     EXPECT_NEAR(sut.trials.at(0).cancelled_share, 1.0 - std::abs(1.0 - share), 1e-12);
   }
@@ -255,9 +254,7 @@ TEST(EvaluateTest, TheCancelledShareIsThePartThatTheMotorRemoves) {
 
 // A tone of f Hz that is opposed in full tau late leaves 2 sin(pi f tau) of it: 2 Hz, 10 ms.
 TEST(EvaluateTest, AMotorThatComesLateCancelsLessAndItsDelayIsFound) {
-  Tape tape;
-  tape.whole_tracking(kStart, kEnd, 0.0);
-  force(tape, 1.0, 10);
+  ForcedTape tape(1.0, 10);
   const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
   const double left = 2.0 * std::sin(std::numbers::pi * 2.0 * 0.010);
   // 10 whole cycles a trial: the RMS of both is exact but for rounding.
@@ -266,9 +263,7 @@ TEST(EvaluateTest, AMotorThatComesLateCancelsLessAndItsDelayIsFound) {
 }
 
 TEST(EvaluateTest, ATrialThatDoesNotMoveHasNoShareAndOneThatDoesNotCancelHasNoDelay) {
-  Tape tape;
-  tape.whole_tracking(kStart, kEnd, 0.0);
-  force(tape, 0.0, 0);
+  ForcedTape tape(0.0, 0);
   const std::string path = tape.close();
   const auto still = evaluate(path, {outcome_of(1, Condition::kA, kStart)});
   EXPECT_TRUE(std::isnan(still.trials.at(0).cancelled_share));
@@ -281,9 +276,7 @@ TEST(EvaluateTest, ATrialThatDoesNotMoveHasNoShareAndOneThatDoesNotCancelHasNoDe
 // 1 us, 2 us, ... 5000 us, in another order; commands outside the trial, and one that answers no
 // sample, would be the largest.
 TEST(EvaluateTest, LatenciesAreQuantilesOverTheTrialsCommands) {
-  Tape tape;
-  tape.whole_tracking(kStart, kEnd, 0.0);
-  force(tape, 1.0, 0);
+  ForcedTape tape(1.0, 0);
   tape.motor(kStart - 1, 1'000'000, 999'000'000);
   for (Tick n = 0; n < kTrial_ticks; ++n) {
     const std::int64_t late_us = 1 + (n * 1237) % kTrial_ticks;  // 1237 is prime: each once
@@ -319,9 +312,7 @@ TEST(EvaluateTest, TheUseOfACommandIsTheFirstStepThatNamesIt) {
 
 // The rig's clock is 5 ms ahead, the cancellation's 2 ms behind: 300 us stay 300 us.
 TEST(EvaluateTest, StampsOfOtherHostsAreTakenOverToOneClock) {
-  Tape tape;
-  tape.whole_tracking(kStart, kEnd, 0.0);
-  force(tape, 1.0, 0);
+  ForcedTape tape(1.0, 0);
   tape.clock("rig", 0, 5'000'000, 40'000.0);
   tape.clock("cancellation", 0, -2'000'000, 25'000.0);
   tape.clock("display", 0, 77, 1e9);
@@ -353,9 +344,7 @@ stillhand_msgs::FeedthroughModel static_model(double gain, bool usable) {
 // A static model that is right: at 1 kHz nothing is left, and what 50 Hz and a hold leave is
 // written out here, sample by sample from the second second on.
 TEST(EvaluateTest, TheCostOfAHoldIsTheErrorOfTheHeldFiftyHertzModel) {
-  Tape tape;
-  tape.whole_tracking(kStart, kEnd, 0.0);
-  force(tape, 0.0, 0);
+  ForcedTape tape(0.0, 0);
   for (Tick tick = kStart; tick < kEnd; ++tick) tape.sensed(tick, acceleration_m_s2(tick));
   tape.file.add(topics::kFeedthroughModel, static_model(-3.2, true));
   const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
@@ -373,9 +362,7 @@ TEST(EvaluateTest, TheCostOfAHoldIsTheErrorOfTheHeldFiftyHertzModel) {
 }
 
 TEST(EvaluateTest, TheNewestModelIsTakenAndAnUnusableOneIsNotJudged) {
-  Tape tape;
-  tape.whole_tracking(kStart, kEnd, 0.0);
-  force(tape, 0.0, 0);
+  ForcedTape tape(0.0, 0);
   tape.file.add(topics::kFeedthroughModel, static_model(-3.2, true));
   tape.file.add(topics::kFeedthroughModel, static_model(-1.0, false));
   const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
@@ -385,9 +372,7 @@ TEST(EvaluateTest, TheNewestModelIsTakenAndAnUnusableOneIsNotJudged) {
 }
 
 TEST(EvaluateTest, WithoutAModelThereIsNoneAndNoCost) {
-  Tape tape;
-  tape.whole_tracking(kStart, kEnd, 0.0);
-  force(tape, 0.0, 0);
+  ForcedTape tape(0.0, 0);
   const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kB, kStart)});
   EXPECT_FALSE(sut.model.has_value());
   EXPECT_FALSE(sut.conversion.has_value());
