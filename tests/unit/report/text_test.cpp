@@ -14,15 +14,13 @@ TEST(TextTest, HtmlKeepsNoCharacterThatOpensATagOrEndsAnAttribute) {
             "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;&lt;/script&gt;");
 }
 
-TEST(TextTest, ALineBreakBecomesASpaceSoThatNoTextEndsAGnuplotCommand) {
+TEST(TextTest, ALineBreakEndsNoGnuplotCommandAndWhatIsTakenLiterallyStays) {
   EXPECT_EQ(gnuplot_quoted("a\nset output 'x'\r\tb"), "'a set output ''x''  b'");
-}
-
-TEST(TextTest, WhatGnuplotsSingleQuotesTakeLiterallyStaysAsItIs) {
   EXPECT_EQ(gnuplot_quoted("$(x) `id` @m \\n %d m/s²"), "'$(x) `id` @m \\n %d m/s²'");
 }
 
-TEST(TextTest, BytesThatAreNoXmlCharacterAreReplaced) {
+TEST(TextTest, LettersOfEveryLengthPassAndBytesThatAreNoXmlCharacterAreReplaced) {
+  EXPECT_EQ(clean("a é ° θ ± − 𝛼"), "a é ° θ ± − 𝛼");
   EXPECT_EQ(clean("a\xFFz"), "a\uFFFDz");
   EXPECT_EQ(clean("\xC3"), "\uFFFD");                      // cut off
   EXPECT_EQ(clean("\xC0\xAF"), "\uFFFD\uFFFD");            // overlong '/'
@@ -33,8 +31,6 @@ TEST(TextTest, BytesThatAreNoXmlCharacterAreReplaced) {
                   "x"),
             " x");  // U+0085, a control character
 }
-
-TEST(TextTest, LettersOfEveryLengthPass) { EXPECT_EQ(clean("a é ° θ ± − 𝛼"), "a é ° θ ± − 𝛼"); }
 
 TEST(TextTest, ScriptNumbersReadBackToNineDigits) {
   for (const double value : {0.0, -1.0 / 3.0, 1234567.89, 5e-7, 1e100, -2.5e-100}) {
@@ -57,10 +53,7 @@ TEST(TextTest, ShortNumbersUsePowersOfTenOnlyForVeryLargeAndSmallOnes) {
   EXPECT_EQ(short_number(2e-5), "2×10⁻⁵");
   EXPECT_EQ(short_number(1e7), "10⁷");
   EXPECT_EQ(short_number(-1.5e12), "−1.5×10¹²");
-}
-
-TEST(TextTest, PowersOfTenLeaveOutAFactorOfOne) {
-  EXPECT_EQ(power_of_ten(1, -3), "10⁻³");
+  EXPECT_EQ(power_of_ten(1, -3), "10⁻³");  // without the factor of one
   EXPECT_EQ(power_of_ten(5, 10), "5×10¹⁰");
 }
 
@@ -81,12 +74,9 @@ TEST(TextTest, EstimatedWidthCoversTheFontsOwn) {
   }
 }
 
-TEST(TextTest, ARestoredShareHasItsIntervalOrSaysThatItHasNone) {
+TEST(TextTest, ARestoredShareHasItsIntervalOrSaysThatItHasNoneAndAWordOutsideOfZeroToOne) {
   EXPECT_EQ(restored(0.47, std::pair(0.3, 0.6)), "47 % [30, 60]");
   EXPECT_EQ(restored(0.47), "47 % (no interval)");
-}
-
-TEST(TextTest, ARestoredShareOutsideOfZeroToOneHasItsWord) {
   EXPECT_EQ(restored(1.3, std::pair(0.9, 1.7)), "130 % [90, 170], better than A");
   EXPECT_EQ(restored(-0.2), "\u221220 % (no interval), worse than B");
 }
