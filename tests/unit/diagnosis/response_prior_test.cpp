@@ -92,18 +92,17 @@ TEST(ResponsePriorTest, ATenthOfTheGainCostsTheNoiseOnEachLine) {
 }
 
 // The products are those of the squares' derivative, here by differences of them.
-TEST(ResponsePriorTest, TheColumnsAreTheDerivatives) {
-  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 0.3, 0.1);
-  const Eigen::VectorXd at = packed(kOther);
+void expect_derivatives(const ResponsePrior& sut, const Model& of) {
+  const Eigen::VectorXd at = packed(of);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(at.size() + 1, at.size() + 1);
-  sut.add(kOther, gram);
-  EXPECT_NEAR(gram(at.size(), at.size()), sut.error(kOther), 1e-12 * sut.error(kOther));
+  sut.add(of, gram);
+  EXPECT_NEAR(gram(at.size(), at.size()), sut.error(of), 1e-12 * sut.error(of));
   for (Eigen::Index i = 0; i < at.size(); ++i) {
     constexpr double kStep = 1e-6;
     const auto error_at = [&](double step) {
       Eigen::VectorXd numbers = at;
       numbers[i] += step;
-      Model model = kOther;
+      Model model = of;
       unpack(numbers, model);
       return sut.error(model);
     };
@@ -111,6 +110,10 @@ TEST(ResponsePriorTest, TheColumnsAreTheDerivatives) {
     // Residual = assumed - response: d error / d number = -2 jacobian^T residual.
     EXPECT_NEAR(-2.0 * gram(i, at.size()), slope, 1e-5 * gram.diagonal().maxCoeff()) << i;
   }
+}
+
+TEST(ResponsePriorTest, TheColumnsAreTheDerivatives) {
+  expect_derivatives({kAssumed.body, kBands, kRate_hz, 0.3, 0.1}, kOther);
 }
 
 // A path of a slow channel: its higher differences answer only what lies above the channel's band.
@@ -126,22 +129,7 @@ TEST(ResponsePriorTest, APathHasNoResponseAboveTheBandOfItsChannel) {
                               {{"coupled_input", "through the body", {"v"}, {}, {0.1, 0.2, 0.3}}});
   const ResponsePrior sut(path, signals, 0.3);
   ASSERT_FALSE(sut.empty());
-  const Eigen::VectorXd at = packed(path);
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(at.size() + 1, at.size() + 1);
-  sut.add(path, gram);
-  EXPECT_NEAR(gram(at.size(), at.size()), sut.error(path), 1e-12 * sut.error(path));
-  for (Eigen::Index i = 0; i < at.size(); ++i) {
-    constexpr double kStep = 1e-6;
-    const auto error_at = [&](double step) {
-      Eigen::VectorXd numbers = at;
-      numbers[i] += step;
-      Model model = path;
-      unpack(numbers, model);
-      return sut.error(model);
-    };
-    const double slope = (error_at(kStep) - error_at(-kStep)) / (2.0 * kStep);
-    EXPECT_NEAR(-2.0 * gram(i, at.size()), slope, 1e-5 * gram.diagonal().maxCoeff()) << i;
-  }
+  expect_derivatives(sut, path);
   const double before = sut.error(path);
   path.effects[0].coefficients[2] = 30.0;
   EXPECT_GT(sut.error(path), 100.0 * before);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "apps/identify/identify_output.hpp"
 #include "apps/libraries/measurement/grid.hpp"

@@ -5,8 +5,12 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/libraries/measurement/read.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -143,7 +147,7 @@ struct Count {
 };
 
 void try_to_read(const std::string& path, const std::string& bytes, Count& count,
-                 const ReadOptions& options = {}) {
+                 const ReadOptions& options) {
   // A new file each time: rewriting one waits for the disk.
   std::remove(path.c_str());
   std::ofstream(path, std::ios::binary) << bytes;
@@ -182,19 +186,37 @@ std::string spoilt(std::string text, Random& random, std::size_t choices,
   return text;
 }
 
-TEST(ReadFuzzTest, ASpoiltTableIsReadOrRefused) {
-  const std::string good = good_table();
-  const std::string path = testing::TempDir() + "fuzz.csv";
-  Random random(20240601);
+/// Reads so many spoilt files of a name.  Both ends are reached more often than `read` and
+/// `refused`, or the generator spoils too little or too much.
+struct Campaign {
+  const char* name;
+  unsigned seed;
+  int runs, read, refused;
+  std::vector<const char*> wishes{};
+};
+void read_or_refuse(const Campaign& campaign, const std::vector<std::string>& good,
+                    const std::function<std::string(std::string, Random&)>& spoil) {
+  ReadOptions options;
+  for (const char* wish : campaign.wishes) options.mapping.columns.push_back(parse_wish(wish));
+  Random random(campaign.seed);
   Count count;
-  for (int run = 0; run < 4000; ++run) {
-    const std::string text = spoilt(good, random, 5, replace_cell);
-    SCOPED_TRACE("run " + std::to_string(run));
-    ASSERT_NO_THROW(try_to_read(path, text, count));
+  for (const std::string& bytes : good) {
+    ASSERT_FALSE(bytes.empty());
+    for (int run = 0; run < campaign.runs; ++run) {
+      SCOPED_TRACE("run " + std::to_string(run));
+      ASSERT_NO_THROW(
+          try_to_read(testing::TempDir() + campaign.name, spoil(bytes, random), count, options));
+    }
   }
-  // Both ends are reached, or the generator spoils too little or too much.
-  EXPECT_GT(count.read, 300);
-  EXPECT_GT(count.refused, 400);
+  EXPECT_GT(count.read, campaign.read);
+  EXPECT_GT(count.refused, campaign.refused);
+}
+
+TEST(ReadFuzzTest, ASpoiltTableIsReadOrRefused) {
+  read_or_refuse({"fuzz.csv", 20240601, 4000, 300, 400}, {good_table()},
+                 [](std::string text, Random& random) {
+                   return spoilt(std::move(text), random, 5, replace_cell);
+                 });
 }
 
 // The same text with other signs and titles, which are looked for and mapped.
@@ -202,30 +224,15 @@ TEST(ReadFuzzTest, ASpoiltTableOfAnotherProgramIsReadOrRefused) {
   std::string good =
       "# made by a logger\nzeit;acc (g);kraft\n" + good_table().substr(good_table().find('\n') + 1);
   for (char& c : good) c = c == ',' ? ';' : c == '.' ? ',' : c;
-  const std::string path = testing::TempDir() + "fuzz_foreign.csv";
-  ReadOptions options;
-  for (const char* wish : {"zeit=t [s]", "acc=a_y", "kraft=f [N]"}) {
-    options.mapping.columns.push_back(parse_wish(wish));
-  }
-  Random random(20241125);
-  Count count;
-  for (int run = 0; run < 4000; ++run) {
-    const std::string text = spoilt(good, random, 4, replace_sign);
-    SCOPED_TRACE("run " + std::to_string(run));
-    ASSERT_NO_THROW(try_to_read(path, text, count, options));
-  }
-  EXPECT_GT(count.read, 300);
-  EXPECT_GT(count.refused, 300);
+  read_or_refuse(
+      {"fuzz_foreign.csv", 20241125, 4000, 300, 300, {"zeit=t [s]", "acc=a_y", "kraft=f [N]"}},
+      {good}, [](std::string text, Random& random) {
+        return spoilt(std::move(text), random, 4, replace_sign);
+      });
 }
 
 TEST(ReadFuzzTest, ASpoiltSessionIsReadOrRefused) {
-  const std::string good = good_session();
-  ASSERT_FALSE(good.empty());
-  const std::string path = testing::TempDir() + "fuzz.mcap";
-  Random random(20240602);
-  Count count;
-  for (int run = 0; run < 3000; ++run) {
-    std::string bytes = good;
+  const auto spoil = [](std::string bytes, Random& random) {
     for (std::size_t spoils = below(random, 3) + 1; spoils > 0 && !bytes.empty(); --spoils) {
       switch (below(random, 4)) {
         case 0:
@@ -238,11 +245,9 @@ TEST(ReadFuzzTest, ASpoiltSessionIsReadOrRefused) {
           flip_byte(bytes, random);
       }
     }
-    SCOPED_TRACE("run " + std::to_string(run));
-    ASSERT_NO_THROW(try_to_read(path, bytes, count));
-  }
-  EXPECT_GT(count.read, 300);
-  EXPECT_GT(count.refused, 300);
+    return bytes;
+  };
+  read_or_refuse({"fuzz.mcap", 20240602, 3000, 300, 300}, {good_session()}, spoil);
 }
 
 template <typename... Values>
@@ -283,20 +288,8 @@ std::string good_xdf() {
 }
 
 TEST(ReadFuzzTest, ASpoiltXdfFileIsReadOrRefused) {
-  const std::string path = testing::TempDir() + "fuzz.xdf";
-  ReadOptions options;
-  for (const char* wish : {"s1.1=a_y [m/s^2]", "s2.1=f [N]"}) {
-    options.mapping.columns.push_back(parse_wish(wish));
-  }
-  const std::string good = good_xdf();
-  Random random(20261127);
-  Count count;
-  for (int run = 0; run < 2000; ++run) {
-    SCOPED_TRACE("run " + std::to_string(run));
-    ASSERT_NO_THROW(try_to_read(path, spoilt_once(good, random), count, options));
-  }
-  EXPECT_GT(count.read, 200);
-  EXPECT_GT(count.refused, 200);
+  read_or_refuse({"fuzz.xdf", 20261127, 2000, 200, 200, {"s1.1=a_y [m/s^2]", "s2.1=f [N]"}},
+                 {good_xdf()}, spoilt_once);
 }
 
 // Numbers in either byte order; a text has its length in front.
@@ -355,27 +348,18 @@ std::string good_tdms(bool big_endian) {
 }
 
 TEST(ReadFuzzTest, ASpoiltTdmsFileIsReadOrRefused) {
-  const std::string path = testing::TempDir() + "fuzz.tdms";
-  ReadOptions options;
-  for (const char* wish : {"g.a_y=a_y [m/s^2]", "g.f=f [N]"}) {
-    options.mapping.columns.push_back(parse_wish(wish));
-  }
-  Random random(20261128);
-  Count count;
+  const std::string path = testing::TempDir() + "good.tdms";
   for (const bool big_endian : {false, true}) {
-    const std::string good = good_tdms(big_endian);
-    std::ofstream(path, std::ios::binary) << good;
+    std::ofstream(path, std::ios::binary) << good_tdms(big_endian);
+    ReadOptions options;
+    options.mapping.columns = {parse_wish("g.a_y=a_y [m/s^2]"), parse_wish("g.f=f [N]")};
     const diagnosis::Measurement read = read_measurement(path, options);
     ASSERT_EQ(read.size(), 150u);
     EXPECT_EQ(read.channels[0].values[55], 55 % 7);
     EXPECT_EQ(read.channels[1].values[149], 10.0 + 0.5 * (149 % 5));
-    for (int run = 0; run < 1500; ++run) {
-      SCOPED_TRACE("run " + std::to_string(run));
-      ASSERT_NO_THROW(try_to_read(path, spoilt_once(good, random), count, options));
-    }
   }
-  EXPECT_GT(count.read, 200);
-  EXPECT_GT(count.refused, 200);
+  read_or_refuse({"fuzz.tdms", 20261128, 1500, 200, 200, {"g.a_y=a_y [m/s^2]", "g.f=f [N]"}},
+                 {good_tdms(false), good_tdms(true)}, spoilt_once);
 }
 
 }  // namespace

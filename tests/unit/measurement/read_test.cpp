@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <set>
+#include <utility>
 
 #include "apps/libraries/measurement/read_options.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -16,7 +17,6 @@ namespace stillhand::measurement {
 namespace {
 
 using diagnosis::Measurement;
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <utility>
 
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"

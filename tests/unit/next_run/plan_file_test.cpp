@@ -70,8 +70,10 @@ TEST_F(PlanFileTest, WhatAHandChangedIsRefusedWithItsPlace) {
     return refused();
   };
   EXPECT_NE(with("/candidates/0/effect", 1), "accepted") << "an effect that the model lacks";
-  EXPECT_NE(with("/candidates/1/model/inputs", {"v"}), "accepted");
-  EXPECT_NE(with("/candidates", {whole["candidates"][0]}), "accepted") << "one is no tie";
+  EXPECT_NE(with("/candidates/1/model/inputs", nlohmann::ordered_json::array({"v"})), "accepted");
+  EXPECT_NE(with("/candidates", nlohmann::ordered_json::array({whole["candidates"][0]})),
+            "accepted")
+      << "one is no tie";
   using testing::HasSubstr;
   EXPECT_THAT(with("/seconds", 900.0), HasSubstr("seconds"));
   EXPECT_THAT(with("/ride", "other.csv"), HasSubstr("ride"));

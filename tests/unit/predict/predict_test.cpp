@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "services/files/diagnosis/model_file.hpp"
 #include "tests/support/refusal.hpp"
@@ -163,11 +164,11 @@ TEST(PredictTest, WhatTheModelCannotBeRunOnIsRefusedWithItsReason) {
       {other_input, HasSubstr("elbow")},
       {with({"coupled_input", "static", {"grip"}, {}, {1.0}}), HasSubstr("grip")},
       {with({"delay", "of the input", {}, {}, {}}), StartsWith("model: got ")}};
-  for (const auto& [model, reason] : cases) {
+  for (const auto& each : cases) {
     EXPECT_THAT(support::refusal([&] {
-                  predict(model, made::measurement_of({{"u", "V", made::white(100, 8)}}));
+                  predict(each.first, made::measurement_of({{"u", "V", made::white(100, 8)}}));
                 }),
-                reason);
+                each.second);
   }
 }
 
