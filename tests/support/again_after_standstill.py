@@ -7,6 +7,10 @@ Usage: again_after_standstill.py COMMAND [ARGUMENT]...
 A virtual machine can lose its processors for tenths of a second. A life sign that lasts 0.3 s is then lost, and a
 session under test ends as it must. A clock of its own on each core measures such standstills, whatever the test does.
 Without one, a failure counts at once. Each run's reason is printed, and the second run counts.
+
+A machine whose system calls are slow cannot hold a loop of 1 kHz over a bus: its real-time processes
+need all of both cores, and the clocks stand still for as long as the kernel lets them. Where that is so, nothing of the
+test was judged, and it counts as skipped.
 """
 import os
 import subprocess
@@ -18,6 +22,10 @@ TICK_S = 0.01
 # No load that was tried (four busy processes on two cores and a full disk queue) delays the clocks by as much.
 STANDSTILL_S = 0.1
 CTEST_SKIPPED = 77
+# Of the cheapest call, from here. At 1.3 us (a guest that its host runs by software, 2026-11-28) a session that does
+# nothing else takes 1.9 of two cores, and about every second one is ended. The limit is half of that: machines on which
+# sessions pass were not measured with this yet, and one that is below it fails as before.
+SLOW_CALL_S = 0.6e-6
 
 
 class Clock(threading.Thread):
@@ -38,11 +46,21 @@ class Clock(threading.Thread):
             before = now
 
 
-def main():
-    command = sys.argv[1:]
-    if not command or command[0] in ("-h", "--help"):
-        print(__doc__)
-        return 0 if command else 2
+def cost_of_a_call_s():
+    """The least of many short measurements, which other processes hardly change."""
+    calls = 10_000
+
+    def once():
+        before = time.perf_counter()
+        for _ in range(calls):
+            os.getppid()
+        return (time.perf_counter() - before) / calls
+
+    return min(once() for _ in range(20))
+
+
+def run(command):
+    """The exit status, and how long the machine stood still meanwhile [s]."""
     clocks = [Clock(core) for core in sorted(os.sched_getaffinity(0))]
     for clock in clocks:
         clock.start()
@@ -50,13 +68,25 @@ def main():
     for clock in clocks:
         clock.ended.set()
         clock.join()
-    longest_s = max(clock.longest_s for clock in clocks)
-    if status in (0, CTEST_SKIPPED) or longest_s < STANDSTILL_S:
-        return status
-    print(f"run 1 failed with status {status}; the machine stood still for {longest_s:.2f} s meanwhile: again",
-          flush=True)
-    status = subprocess.run(command, check=False).returncode
-    print(f"run 2 ended with status {status}", flush=True)
+    return status, max(clock.longest_s for clock in clocks)
+
+
+def main():
+    command = sys.argv[1:]
+    if not command or command[0] in ("-h", "--help"):
+        print(__doc__)
+        return 0 if command else 2
+    for turn in (1, 2):
+        status, longest_s = run(command)
+        if status in (0, CTEST_SKIPPED) or longest_s < STANDSTILL_S:
+            return status
+        print(f"run {turn} failed with status {status}; the machine stood still for {longest_s:.2f} s meanwhile",
+              flush=True)
+        cost_s = cost_of_a_call_s()
+        if cost_s > SLOW_CALL_S:
+            print(f"skipped: a system call costs {1e6 * cost_s:.1f} us, want {1e6 * SLOW_CALL_S:.1f} at most for 1 kHz",
+                  flush=True)
+            return CTEST_SKIPPED
     return status
 
 
