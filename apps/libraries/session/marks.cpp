@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace stillhand::session {
 namespace {
@@ -27,7 +28,7 @@ constexpr std::array kEvents{"deadline missed",
                              "clock drifts",
                              "asked from outside",
                              "second writer"};
-static_assert(kEvents.size() == stillhand_msgs::EVENT_SECOND_WRITER + 1);
+static_assert(kEvents.size() == static_cast<std::size_t>(stillhand_msgs::EVENT_SECOND_WRITER) + 1);
 
 const char* name_of(stillhand_msgs::EventKind kind) {
   const auto number = static_cast<std::size_t>(kind);

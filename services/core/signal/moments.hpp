@@ -20,10 +20,12 @@ inline double mean_square(std::span<const double> values, double level = 0.0) no
   return sum / static_cast<double>(values.size());
 }
 
+/// Root of the mean square about 0; NaN without values.
 inline double rms(std::span<const double> values) noexcept {
   return std::sqrt(mean_square(values));
 }
 
+/// Mean square about the mean, over N and not N - 1; NaN without values.
 inline double variance(std::span<const double> values) noexcept {
   return mean_square(values, mean(values));
 }
