@@ -8,6 +8,7 @@
 
 #include "services/core/diagnosis/fitting/fit.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/diagnosis/trials.hpp"
 
 namespace stillhand::next_run {
@@ -40,7 +41,7 @@ Candidate completed(const Trial& trial, const Model& found, std::size_t replaced
   for (std::size_t e = 0; e < found.effects.size(); ++e) {
     const auto is_this = [&](const Effect& each) { return is_same(each, found.effects[e]); };
     if (e != replaced && std::ranges::none_of(effects, is_this)) {
-      effects.push_back(found.effects[e]);
+      effects.push_back(at_order(found.effects[e], found.body.order(), trial.model.body.order()));
     }
   }
   diagnosis::fit(candidate.model, signals, diagnosis::make_blocks(signals));

@@ -101,5 +101,19 @@ TEST(LoopTest, AStretchMayBeginAtTheStop) {
   for (std::size_t n = 0; n < kCount; ++n) ASSERT_NEAR(run.prediction[n], 1.5, 1e-9) << n;
 }
 
+// A start for a fit: where a body has other poles, an effect keeps as many differences as it can.
+TEST(LoopTest, AnEffectFitsABodyOfAnotherOrder) {
+  const Effect inside{"asymmetry", "slopes inside the body", {}, {}, {1, 2, 3, 4, 5, 6, 7, 8}};
+  const Effect higher = at_order(inside, 2, 3);
+  EXPECT_EQ(higher.coefficients, (std::vector<double>{1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 0}));
+  EXPECT_EQ(at_order(higher, 3, 2).coefficients, inside.coefficients);
+  const Effect of_output{"asymmetry", "slopes of the output", {}, {}, {1, 2}};
+  EXPECT_EQ(at_order(of_output, 2, 4).coefficients, (std::vector<double>{1, 2, 0, 0}));
+  const Effect path{"coupled_input", "through the body", {"theta"}, {}, {1, 2, 3}};
+  EXPECT_EQ(at_order(path, 2, 1).coefficients, (std::vector<double>{1, 2}));
+  const Effect term{"coupled_input", "static", {"theta"}, {}, {1}};
+  EXPECT_EQ(at_order(term, 2, 1).coefficients, term.coefficients);
+}
+
 }  // namespace
 }  // namespace stillhand::diagnosis

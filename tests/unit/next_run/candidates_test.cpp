@@ -43,6 +43,35 @@ TEST(CandidatesTest, TwoChannelsThatAreNearlyTheSameAreTied) {
   EXPECT_THAT(channels, testing::IsSupersetOf({"x", "z"}));
 }
 
+// The rival was tried with a body of its own, and takes over the spring that was found behind it.
+TEST(CandidatesTest, ARivalMayHaveABodyOfAnotherOrder) {
+  const diagnosis::Signals signals(measured(), {"u"}, "y");
+  const auto tried = [](const char* channel, std::size_t order) {
+    diagnosis::Body body;
+    body.denominator.assign(order + 1, 0.0);
+    body.denominator.front() = 1.0;
+    body.numerators = {std::vector<double>(order + 1, 1.0)};
+    diagnosis::Trial trial;
+    trial.rmse = 1.0;
+    trial.model =
+        diagnosis::made::model_of(body, {{"coupled_input", "static", {channel}, {}, {1.0}}});
+    return trial;
+  };
+  diagnosis::Diagnosis diagnosis;
+  diagnosis::Addition addition;
+  addition.tried = {tried("x", 2), tried("z", 1)};
+  diagnosis.search.additions = {addition};
+  diagnosis.effects.resize(1);
+  diagnosis.effects.front().ties = {"coupled_input"};
+  diagnosis.model = addition.tried.front().model;
+  diagnosis.model.effects.push_back({"asymmetry", "slopes of the output", {}, {}, {0.01, 0.01}});
+  const std::vector<Candidate> sut = candidates_of(diagnosis, 0, signals);
+  ASSERT_EQ(sut.size(), 2U);
+  for (const Candidate& each : sut) {
+    EXPECT_EQ(each.model.effects.back().coefficients.size(), each.model.body.order());
+  }
+}
+
 TEST(CandidatesTest, ATieHasOneWordingWhetherItIsBrokenOrNot) {
   Tie tie{0, {made::candidate("x"), made::candidate("z")}};
   tie.left = tie.close;

@@ -200,6 +200,28 @@ bool fits_loop(std::size_t coefficients, const Nonlinearity& nonlinearity, std::
   return coefficients == order || coefficients == 3 * order + 2;
 }
 
+Effect at_order(Effect effect, std::size_t from, std::size_t to) {
+  std::vector<std::size_t> lengths;  // of each polynomial, less the order
+  const EffectKind& kind = effect_kind(effect.kind);
+  const std::vector<double> all = std::move(effect.coefficients);
+  if (kind.through_body(effect)) {
+    lengths.assign(all.size() / (from + 1), 1);
+  } else if (kind.stage(effect) == Stage::kFeedback && all.size() == from) {
+    lengths = {0};
+  } else if (kind.stage(effect) == Stage::kFeedback && !all.empty()) {
+    lengths = {1, 1, 0};
+  }
+  effect.coefficients = lengths.empty() ? all : std::vector<double>();
+  auto next = all.begin();
+  for (const std::size_t more : lengths) {
+    std::vector<double> polynomial(next, next + static_cast<std::ptrdiff_t>(from + more));
+    next += std::ssize(polynomial);
+    polynomial.resize(to + more, 0.0);
+    effect.coefficients.insert(effect.coefficients.end(), polynomial.begin(), polynomial.end());
+  }
+  return effect;
+}
+
 std::vector<double> LoopPath::to_argument(const std::vector<double>& denominator) const {
   if (!of_output()) return m;
   std::vector<double> path = e;

@@ -53,6 +53,9 @@ struct LoopRun {
 
 /// Coefficients that a feedback effect of this nonlinearity has for a body of this order.
 bool fits_loop(std::size_t coefficients, const Nonlinearity& nonlinearity, std::size_t order);
+/// The effect next to a body of another order: polynomials by the order (of a feedback, of a term
+/// through the body) lose their highest differences or get zeros.  A start for a fit.
+Effect at_order(Effect effect, std::size_t from, std::size_t to);
 /// E times the effect's share, Eq. DG-68.
 LoopPath loop_path(const Effect& effect, std::size_t order);
 
