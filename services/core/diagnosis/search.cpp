@@ -287,6 +287,10 @@ class Forward {
                                       ? (1.0 - options_.large_fall) * current.rmse()
                                       : (1.0 - options_.tie) * named.rmse;
       std::vector<Trial> shapes = free_forms(result.model, current, judged);
+      if (auto curve = curve_in_place(named, tried, judged, settings_)) {
+        shapes.push_back(*std::move(curve));
+        std::ranges::stable_sort(shapes, by_rmse);
+      }
       if (!shapes.empty() && shapes.front().rmse < clearly_less) {
         const auto shape = confirmed(shapes, current, options_.least_fall,
                                      RecordingsOut(judged, blocks_), options_, result);

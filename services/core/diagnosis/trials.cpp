@@ -6,9 +6,11 @@
 #include <iterator>
 #include <limits>
 
+#include "services/core/diagnosis/fitting/cascade.hpp"
 #include "services/core/diagnosis/fitting/screening.hpp"
 #include "services/core/diagnosis/fitting/shape_exchange.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::diagnosis {
@@ -290,6 +292,68 @@ std::vector<Trial> finished_trials(Screened screened, double current_rmse, const
   exchange_shapes(all, current_rmse, signals, settings);
   drop_bursts(all, current_rmse);
   return std::move(all);
+}
+
+namespace {
+
+// The best fit of a curve that begins as the law's own, in its linear parts or between two bodies.
+std::optional<Trial> curve_after(const Trial& law, const Part& part, const Signals& signals,
+                                 const RoundSettings& settings) {
+  const FreeRun run = free_run(law.model, signals);
+  const auto drawn_by = [&](const EffectKind* kind) {
+    return kind->drawn_after(run.argument, run.phi, run.weight);
+  };
+  const auto drawer = std::ranges::find_if(
+      effect_kinds(), [&](const EffectKind* kind) { return drawn_by(kind).has_value(); });
+  if (drawer == effect_kinds().end()) return {};
+  std::vector<Model> starts;
+  const auto add = [&starts](std::optional<Model> start) {
+    if (start) starts.push_back(*std::move(start));
+  };
+  add(with_shape_of(*drawn_by(*drawer), law.model, signals));
+  // More poles than the body was asked for (DG-49): those of a second one?
+  if (static_cast<int>(law.model.body.order()) > settings.order && law.model.effects.size() == 1) {
+    add(cascade(law.model, **drawer, part.signals));
+  }
+  std::optional<Trial> best;
+  for (Model& start : starts) {
+    Trial trial = judged_trial(std::move(start), part.signals, part.blocks,
+                               settings.options.fit_iterations, part.is_whole);
+    if (std::isfinite(trial.rmse) && (!best || trial.rmse < best->rmse)) best = std::move(trial);
+  }
+  return best;
+}
+
+// The law whose shape is the curve's, if there is one, from the curve's linear parts.
+std::optional<Model> read_by_law(const Model& curve, const std::vector<Trial>& tried,
+                                 const Signals& signals) {
+  double least = 0.1;  // of the curve's bend
+  const Trial* reader = nullptr;
+  const FreeRun run = free_run(curve, signals);
+  for (const Trial& law : tried) {
+    if (!ends_inside_body(law.model)) continue;
+    const double unread =
+        bend_unread(curve.effects.back(), law.model.effects.back(), run.argument, signals);
+    if (unread >= least) continue;
+    least = unread;
+    reader = &law;
+  }
+  if (reader == nullptr) return {};
+  return with_shape_of(reader->model.effects.back(), curve, signals);
+}
+
+}  // namespace
+
+std::optional<Trial> curve_in_place(const Trial& law, const std::vector<Trial>& tried,
+                                    const Signals& signals, const RoundSettings& settings) {
+  if (!ends_inside_body(law.model)) return {};
+  const Part part(signals, settings);
+  std::optional<Trial> curve = curve_after(law, part, signals, settings);
+  if (!curve) return {};
+  const std::optional<Model> read = read_by_law(curve->model, tried, part.signals);
+  if (!read && part.is_whole) return curve;
+  return judged_trial(read ? *read : curve->model, signals, settings.blocks,
+                      settings.options.fit_iterations, true);
 }
 
 std::vector<Proposal> with_own_bodies(const std::vector<Trial>& trials) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 
 #include "services/core/diagnosis/diagnose.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
@@ -176,6 +177,17 @@ TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
                           {}},
                          signals, {}, columns),
                std::out_of_range);
+  const std::vector<Parameter> heights(3, constant("height_1", "-", 0.0));
+  for (const double last : {2.0, 0.5}) {  // a height too few, and knots that do not ascend
+    Effect inside{"free_form",
+                  "curve inside the body",
+                  {},
+                  {knot("knot_1", 0.0), knot("knot_2", 1.0), knot("knot_3", last)},
+                  {}};
+    inside.parameters.insert(inside.parameters.end(), heights.begin(),
+                             heights.end() - (last > 1.0 ? 1 : 0));
+    EXPECT_THROW(std::ignore = sut.feedback(inside), std::out_of_range);
+  }
   std::vector<double> gain(50, 1.0);
   EXPECT_THROW(sut.gain({"free_form",
                          "gain over the size of an input",
@@ -219,6 +231,33 @@ TEST(FreeFormTest, TheEvidenceGivesTheCurve) {
   EXPECT_EQ(effect_kind("free_form").evidence(sut),
             "no named kind has this shape; the force over theta is -1 at -1 rad, 0 at 0 rad, 2 at "
             "2 rad");
+}
+
+// Level, slope and size are not the curve's: the outer heights are held, and the one that is
+// furthest from the straight line between them.
+TEST(FreeFormTest, ACurveInsideBeginsAsTheLawInWhosePlaceItIs) {
+  const std::vector<double> z = made::white(2000, 8);
+  std::vector<double> phi = z;
+  for (double& each : phi) each = std::abs(each);
+  const std::vector<double> weight(z.size(), 1.0);
+  const auto sut = effect_kind("free_form").drawn_after(z, phi, weight);
+  ASSERT_TRUE(sut);
+  EXPECT_EQ(effect_kind("free_form").stage(*sut), Stage::kFeedback);
+  EXPECT_EQ(complexity(*sut), sut->parameters.size() / 2 - 3);
+  const Nonlinearity law = effect_kind("free_form").feedback(*sut);
+  LoopMemory memory;
+  for (const double at : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+    EXPECT_NEAR(law.phi(at, memory), std::abs(at), 0.15) << at;  // the bend is rounded off
+  }
+  EXPECT_NEAR(law.phi(8.0, memory) - law.phi(7.0, memory), 1.0, 0.2);  // straight on
+}
+
+TEST(FreeFormTest, AForceWithMemoryIsNoCurve) {
+  const std::vector<double> z = made::ride(2000, 8);
+  std::vector<double> late(z.size());
+  std::copy(z.begin(), z.end() - 10, late.begin() + 10);
+  EXPECT_FALSE(effect_kind("free_form").drawn_after(z, late, std::vector<double>(z.size(), 1.0)));
+  EXPECT_FALSE(effect_kind("delay").drawn_after(z, z, std::vector<double>(z.size(), 1.0)));
 }
 
 }  // namespace

@@ -34,17 +34,6 @@ Polynomial sum(const Polynomial& a, double factor, const Polynomial& b) {
   return result;
 }
 
-// The reverse of loop_path(): its polynomials as the effect's coefficients.
-std::vector<double> coefficients_of(const LoopPath& path) {
-  std::vector<double> all = difference_basis(path.e);
-  const auto append = [&all](const std::vector<double>& part) {
-    all.insert(all.end(), part.begin(), part.end());
-  };
-  append(difference_basis(path.n));
-  append(difference_basis({path.m.begin() + 1, path.m.end()}));
-  return all;
-}
-
 std::vector<double> shaped(const Effect& effect, const std::vector<double>& z, double scale,
                            const Signals& signals) {
   const Nonlinearity nonlinearity = effect_kind(effect.kind).feedback(effect);
@@ -63,32 +52,40 @@ struct Match {
   double alpha = 0.0;
   double beta = 1.0;
   double gamma = 0.0;
+  double left = std::numeric_limits<double>::infinity();  // sum of squares
 };
+
+Eigen::Map<const Eigen::VectorXd> column(const std::vector<double>& x) {
+  return {x.data(), static_cast<Eigen::Index>(x.size())};
+}
 
 Match matched(const Effect& own, const Effect& other, const std::vector<double>& z,
               const Signals& signals) {
   constexpr std::array kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
-  const auto column = [](const std::vector<double>& x) {
-    return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-  };
   const std::vector<double> phi = shaped(own, z, 1.0, signals);
   Match best;
-  double least = std::numeric_limits<double>::infinity();
   for (const double beta : kScales) {
     const std::vector<double> psi = shaped(other, z, beta, signals);
     Eigen::MatrixXd columns(static_cast<Eigen::Index>(z.size()), 2);
     columns << column(psi), column(z);
     const Eigen::Vector2d factors = columns.colPivHouseholderQr().solve(column(phi));
     const double left = (column(phi) - columns * factors).squaredNorm();
-    if (left < least) {
-      least = left;
-      best = {factors[0], beta, factors[1]};
-    }
+    if (left < best.left) best = {factors[0], beta, factors[1], left};
   }
   return best;
 }
 
 }  // namespace
+
+std::vector<double> coefficients_of(const LoopPath& path) {
+  std::vector<double> all = difference_basis(path.e);
+  const auto append = [&all](const std::vector<double>& part) {
+    all.insert(all.end(), part.begin(), part.end());
+  };
+  append(difference_basis(path.n));
+  append(difference_basis({path.m.begin() + 1, path.m.end()}));
+  return all;
+}
 
 bool ends_inside_body(const Model& model) {
   return !model.effects.empty() && acts_at(model.effects.back(), Stage::kFeedback) &&
@@ -130,6 +127,26 @@ std::optional<Model> with_shape_of(const Effect& other, const Model& model,
   if (!is_stable(result.body)) stabilise(result.body);
   if (!free_run(result, signals).finite) return std::nullopt;
   return result;
+}
+
+double bend_unread(const Effect& curve, const Effect& law, const std::vector<double>& z,
+                   const Signals& signals) {
+  constexpr std::array kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
+  const std::vector<double> phi = shaped(curve, z, 1.0, signals);
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(z.size()), 3);
+  columns.col(0).setOnes();
+  columns.col(1) = column(z);
+  const auto left_by = [&](Eigen::Index count) {
+    const auto used = columns.leftCols(count);
+    return (column(phi) - used * used.colPivHouseholderQr().solve(column(phi))).norm();
+  };
+  const double bend = left_by(2);
+  double least = bend;
+  for (const double beta : kScales) {
+    columns.col(2) = column(shaped(law, z, beta, signals));
+    least = std::min(least, left_by(3));
+  }
+  return bend > 0.0 ? least / bend : 0.0;
 }
 
 }  // namespace stillhand::diagnosis

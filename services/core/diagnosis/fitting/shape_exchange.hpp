@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/diagnosis/model/model.hpp"
 #include "services/core/diagnosis/model/signals.hpp"
 
@@ -10,6 +12,9 @@
 /// softens and one with play have the same linear parts, and only the fit that got there knows
 /// them.
 namespace stillhand::diagnosis {
+
+/// The reverse of loop_path(): its polynomials as coefficients of a nonlinearity inside the body.
+std::vector<double> coefficients_of(const LoopPath& path);
 
 /// True when the model's last effect is a nonlinearity inside the body.
 bool ends_inside_body(const Model& model);
@@ -23,5 +28,11 @@ Model lifted(const Model& model);
 /// its place, psi of `other`'s kind and form.
 /// @return nullopt where that is unstable or runs away
 std::optional<Model> with_shape_of(const Effect& other, const Model& model, const Signals& signals);
+
+/// The share of a curve's bend (what a straight line leaves of phi over `z`) that a law leaves, at
+/// the best scale of its argument, with any factor and straight line, METHOD Eq. DG-90.
+/// @return 0 to 1 [-] of the RMS; 0 without a bend
+double bend_unread(const Effect& curve, const Effect& law, const std::vector<double>& z,
+                   const Signals& signals);
 
 }  // namespace stillhand::diagnosis

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,7 +25,7 @@ using LoopMemory = signal::HysteresisMemory;
 
 /// phi of a signal in units of its threshold, as a function that the loop calls once a sample.
 struct Nonlinearity {
-  double (*phi)(double z, LoopMemory& memory) = nullptr;
+  std::function<double(double z, LoopMemory& memory)> phi = {};
   double threshold = 1.0;
   /// [unit of the output] of a stop, Eq. DG-28: z, the output before it, counts from here, and phi
   /// is taken from the output of the same sample.
@@ -58,6 +59,14 @@ class EffectKind {
   [[nodiscard]] virtual bool time_only(const Effect& /*effect*/) const { return false; }
   /// True when it takes any shape and has no law: tried apart from the others, Eq. DG-64.
   [[nodiscard]] virtual bool any_shape() const { return false; }
+  /// any_shape(): a curve in place of another kind's phi inside the body, as it is where it has its
+  /// argument.  Its coefficients are left to the caller.
+  /// @param weight  of each sample
+  [[nodiscard]] virtual std::optional<Effect> drawn_after(
+      const std::vector<double>& /*argument*/, const std::vector<double>& /*phi*/,
+      const std::vector<double>& /*weight*/) const {
+    return {};
+  }
   /// Its curve, where it takes any shape.
   [[nodiscard]] virtual std::optional<Curve> curve(const Effect& /*effect*/,
                                                    const Signals& /*signals*/) const {
