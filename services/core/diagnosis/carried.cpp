@@ -153,9 +153,11 @@ Signals bursts_masked(const Model& found, const Signals& signals) {
   return signals.weighed(std::move(weight));
 }
 
-// A law whose force turns with its argument: it moves as the motion does.
+// A law whose force turns with its argument: it moves as the motion does.  So may a curve, whose
+// heights are never exactly odd.
 bool is_odd_feedback(const Effect& effect) {
   if (!has_feedback(effect)) return false;
+  if (effect_kind(effect.kind).any_shape()) return true;
   const Nonlinearity law = effect_kind(effect.kind).feedback(effect);
   return std::ranges::all_of(std::array{0.3, 1.0, 3.0}, [&](double z) {
     LoopMemory one;

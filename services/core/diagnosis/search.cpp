@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -21,6 +22,10 @@ bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fa
   if (passes_over_samples(trial)) return 1.0 - comparison.rmse_ratio > options.large_fall;
   if (shows_in_rows(trial.model.effects.back())) return 1.0 - comparison.rmse_ratio > least_fall;
   return worth_it(comparison, options, least_fall, candidates);
+}
+
+bool has_any_shape(const Trial& trial) {
+  return effect_kind(trial.model.effects.back().kind).any_shape();
 }
 
 // Effects of time alone describe one recording and cannot be tested on another.
@@ -287,7 +292,7 @@ class Forward {
                                       ? (1.0 - options_.large_fall) * current.rmse()
                                       : (1.0 - options_.tie) * named.rmse;
       std::vector<Trial> shapes = free_forms(result.model, current, judged);
-      if (auto curve = curve_in_place(named, tried, judged, settings_)) {
+      if (auto curve = curve_in_place(named, tried, current.rmse(), judged, settings_)) {
         shapes.push_back(*std::move(curve));
         std::ranges::stable_sort(shapes, by_rmse);
       }
@@ -295,8 +300,12 @@ class Forward {
         const auto shape = confirmed(shapes, current, options_.least_fall,
                                      RecordingsOut(judged, blocks_), options_, result);
         if (shape && shapes[*shape].rmse < clearly_less) {
+          // Of a law with a curve's linear parts the named ones still are the rivals.
+          const double error = shapes[*shape].rmse;
+          if (!has_any_shape(shapes[*shape])) std::ranges::copy(tried, std::back_inserter(shapes));
           tried = std::move(shapes);
-          chosen = shape;
+          std::ranges::stable_sort(tried, by_rmse);
+          chosen = std::ranges::find(tried, error, &Trial::rmse) - tried.begin();
         }
       }
     }

@@ -324,36 +324,38 @@ std::optional<Trial> curve_after(const Trial& law, const Part& part, const Signa
   return best;
 }
 
-// The law whose shape is the curve's, if there is one, from the curve's linear parts.
+// With the law whose shape is the curve's, if one of those that were tried has it.
 std::optional<Model> read_by_law(const Model& curve, const std::vector<Trial>& tried,
                                  const Signals& signals) {
-  double least = 0.1;  // of the curve's bend
-  const Trial* reader = nullptr;
-  const FreeRun run = free_run(curve, signals);
+  Reading best{0.1, {}};  // of the curve's bend
   for (const Trial& law : tried) {
     if (!ends_inside_body(law.model)) continue;
-    const double unread =
-        bend_unread(curve.effects.back(), law.model.effects.back(), run.argument, signals);
-    if (unread >= least) continue;
-    least = unread;
-    reader = &law;
+    Reading reading = read_as(law.model.effects.back(), curve, signals);
+    if (reading.model && reading.unread < best.unread) best = std::move(reading);
   }
-  if (reader == nullptr) return {};
-  return with_shape_of(reader->model.effects.back(), curve, signals);
+  return std::move(best.model);
 }
 
 }  // namespace
 
 std::optional<Trial> curve_in_place(const Trial& law, const std::vector<Trial>& tried,
-                                    const Signals& signals, const RoundSettings& settings) {
+                                    double current_rmse, const Signals& signals,
+                                    const RoundSettings& settings) {
   if (!ends_inside_body(law.model)) return {};
   const Part part(signals, settings);
   std::optional<Trial> curve = curve_after(law, part, signals, settings);
   if (!curve) return {};
+  const auto ended = [&](const Model& model) {
+    return judged_trial(model, signals, settings.blocks, settings.options.fit_iterations, true);
+  };
   const std::optional<Model> read = read_by_law(curve->model, tried, part.signals);
-  if (!read && part.is_whole) return curve;
-  return judged_trial(read ? *read : curve->model, signals, settings.blocks,
-                      settings.options.fit_iterations, true);
+  if (!part.is_whole) curve = ended(curve->model);
+  if (!read) return curve;
+  Trial named = ended(*read);
+  const auto gain = [&](const Trial& trial) {
+    return current_rmse * current_rmse - trial.rmse * trial.rmse;
+  };
+  return gain(named) >= settings.options.tied_gain * gain(*curve) ? std::move(named) : curve;
 }
 
 std::vector<Proposal> with_own_bodies(const std::vector<Trial>& trials) {

@@ -73,11 +73,13 @@ void fit_first(Screened& screened, const Signals& signals, const RoundSettings& 
 std::vector<Trial> finished_trials(Screened screened, double current_rmse, const Signals& signals,
                                    const RoundSettings& settings);
 /// A curve that the data draw in place of the law that acts inside the body, METHOD Eq. DG-90; or
-/// the law of those that were tried whose shape the curve has, with the curve's linear parts.
+/// the law of those that were tried that describes the curve, with the curve's linear parts.
 /// @param law  the model's last effect
+/// @param current_rmse  held out, of the model without any of them
 /// @return nullopt where there is no law without memory inside the body, or the curve fails
 std::optional<Trial> curve_in_place(const Trial& law, const std::vector<Trial>& tried,
-                                    const Signals& signals, const RoundSettings& settings);
+                                    double current_rmse, const Signals& signals,
+                                    const RoundSettings& settings);
 /// The proposals that came with bodies of their own, as they were fitted.
 std::vector<Proposal> with_own_bodies(const std::vector<Trial>& trials);
 

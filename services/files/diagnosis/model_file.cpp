@@ -24,6 +24,7 @@ constexpr std::size_t kMostOrder = 12;
 constexpr std::size_t kMostInputs = 16;
 constexpr std::size_t kMostEffects = 16;
 constexpr std::size_t kMostNumbers = 200;
+constexpr const char* kReadByForm = "the channels and parameters that its kind and form read";
 
 Json json_of(const SeenRange& range) {
   return {{"of", range.of}, {"unit", range.unit}, {"low", range.low}, {"high", range.high}};
@@ -148,10 +149,13 @@ Effect effect_of(const Entry& entry, std::size_t order) {
       entry.at("share").refuse("a number above 0, at most 1");
     }
   }
-  if ((*known)->stage(effect) == Stage::kFeedback) {
-    if (!fits_loop(effect.coefficients.size(), (*known)->feedback(effect), order)) {
+  try {
+    if ((*known)->stage(effect) == Stage::kFeedback &&
+        !fits_loop(effect.coefficients.size(), (*known)->feedback(effect), order)) {
       entry.at("coefficients").refuse("as many as the body's order asks for");
     }
+  } catch (const std::out_of_range&) {
+    entry.refuse(kReadByForm);
   }
   return effect;
 }
@@ -207,7 +211,7 @@ void check_effects(const Model& model, const std::vector<Entry>& entries) {
       static_cast<void>(free_run(alone, signals));
       static_cast<void>(effect_kind(effect.kind).time_only(effect));
     } catch (const std::out_of_range&) {
-      entries[i].refuse("the channels and parameters that its kind and form read");
+      entries[i].refuse(kReadByForm);
     }
   }
 }

@@ -3,6 +3,7 @@
 // knots.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -250,6 +251,27 @@ TEST(FreeFormTest, ACurveInsideBeginsAsTheLawInWhosePlaceItIs) {
     EXPECT_NEAR(law.phi(at, memory), std::abs(at), 0.15) << at;  // the bend is rounded off
   }
   EXPECT_NEAR(law.phi(8.0, memory) - law.phi(7.0, memory), 1.0, 0.2);  // straight on
+  EXPECT_NEAR(law.phi(0.0, memory), 0.0, 1e-12);                       // no force at rest
+}
+
+// Without a bend nothing but its ends can be held: a height between them would be rounding's
+// choice.
+TEST(FreeFormTest, AStraightCurveHoldsItsEndsAlone) {
+  const std::vector<double> z = made::white(2000, 8);
+  const auto sut = effect_kind("free_form").drawn_after(z, z, std::vector<double>(z.size(), 1.0));
+  ASSERT_TRUE(sut);
+  EXPECT_EQ(complexity(*sut), sut->parameters.size() / 2 - 2);
+}
+
+// (high + low + (high - low)) / 2 is rounded to more than high.
+TEST(FreeFormTest, TheLastKnotIsTheLargestArgumentWhateverRoundingSays) {
+  std::vector<double> z = made::white(500, 8);
+  z.front() = -3.061892643803443;
+  z.back() = 3.7701509331258065;
+  for (double& each : z) each = std::clamp(each, z.front(), z.back());
+  const auto sut = effect_kind("free_form").drawn_after(z, z, std::vector<double>(z.size(), 1.0));
+  ASSERT_TRUE(sut);
+  EXPECT_EQ(sut->parameters[sut->parameters.size() / 2 - 1].value, z.back());
 }
 
 TEST(FreeFormTest, AForceWithMemoryIsNoCurve) {
@@ -258,6 +280,19 @@ TEST(FreeFormTest, AForceWithMemoryIsNoCurve) {
   std::copy(z.begin(), z.end() - 10, late.begin() + 10);
   EXPECT_FALSE(effect_kind("free_form").drawn_after(z, late, std::vector<double>(z.size(), 1.0)));
   EXPECT_FALSE(effect_kind("delay").drawn_after(z, z, std::vector<double>(z.size(), 1.0)));
+}
+
+// A limit on one side: straight up to 0, level above.
+TEST(FreeFormTest, TheEvidenceOfACurveInsideIsItsSlopes) {
+  Effect sut{"free_form", "curve inside the body", {}, {}, {}};
+  const auto append = [&](const char* name, double value) {
+    sut.parameters.push_back(constant(name, "-", value));
+  };
+  for (const double knot : {-2.0, -1.0, 0.0, 1.0, 2.0}) append("knot_", knot);
+  for (const double height : {-2.0, -1.0, 0.0, 0.0, 0.0}) append("height_", height);
+  EXPECT_EQ(effect_kind("free_form").evidence(sut),
+            "no named kind bends as the curve inside the body does; its low end has 100 %, its "
+            "high end 0 % of its steepest slope");
 }
 
 }  // namespace

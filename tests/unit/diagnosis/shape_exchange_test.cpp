@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
@@ -68,6 +69,7 @@ class ShapeExchangeTest : public ::testing::Test {
   Effect play_{"dead_zone", "play inside the body", {}, {}, {}};
   Effect levelled_{"nonlinear_stiffness", "levelled inside the body", {}, {}, {}};
   Effect bent_{"nonlinear_stiffness", "bent inside the body", {}, {}, {}};
+  Effect slopes_{"asymmetry", "slopes inside the body", {}, {}, {}};
   Effect cubic_{"nonlinear_stiffness", "cubic inside the body", {}, {}, {}};
   double size_ =
       made::rms_of(made::answer(made::two_pole_body().numerators[0],
@@ -117,6 +119,26 @@ TEST_F(ShapeExchangeTest, OnlyANonlinearityInsideTheBodyIsOne) {
   EXPECT_FALSE(ends_inside_body(model));
   model.effects.clear();
   EXPECT_FALSE(ends_inside_body(model));
+}
+
+// Eq. DG-90, wherever the threshold lies: the scale of z is the fit's.  Far out, where few samples
+// are, eleven knots round the corners off by more.
+TEST_F(ShapeExchangeTest, ACurveIsReadByTheLawThatDrewIt) {
+  for (const double threshold : {0.4, 0.55, 0.7, 0.85, 1.0}) {
+    const Model model = sprung(play_, -0.05, threshold * size_);
+    const FreeRun of_law = free_run(model, signals_);
+    const auto curve =
+        effect_kind("free_form").drawn_after(of_law.argument, of_law.phi, signals_.weight());
+    ASSERT_TRUE(curve) << threshold;
+    const auto sut = with_shape_of(*curve, model, signals_);
+    ASSERT_TRUE(sut) << threshold;
+    const Reading by_own = read_as(play_, *sut, signals_);
+    EXPECT_LT(by_own.unread, 0.1) << threshold;
+    ASSERT_TRUE(by_own.model) << threshold;
+    EXPECT_EQ(by_own.model->effects.back().kind, "dead_zone");
+    EXPECT_LT(difference(*by_own.model, *sut), 0.1) << threshold;
+    EXPECT_GT(read_as(slopes_, *sut, signals_).unread, 0.5) << threshold;
+  }
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/map_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
+#include "services/core/diagnosis/effects/smooth_curve.hpp"
 #include "services/core/diagnosis/fitting/baseline.hpp"
 #include "services/core/diagnosis/model/loop_sizes.hpp"
 #include "services/core/signal/decompositions.hpp"
@@ -20,16 +22,11 @@ constexpr const char* kFactor = "factor over a channel";
 constexpr const char* kGain = "gain over a channel";
 constexpr const char* kSize = "gain over the size of an input";
 constexpr const char* kCurve = "curve of the input";
-constexpr const char* kInside = "curve inside the body";
 
 // Shares of the samples below each knot: close in the middle, where there are many samples.
 constexpr std::array kKnotShares{0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99};
 // Of a curve in front of the body, whose ends move the output for long.
 constexpr std::array kInputShares{0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
-// Of a curve inside the body, whose argument the fit moves.
-constexpr std::size_t kInsideKnots = 11;
-constexpr std::size_t kFewestKnots = 3;
-constexpr double kApart = 0.02;  // knots, of the distance between the outer ones
 constexpr double kMemories_s[] = {0.5, 2.0, 8.0};
 constexpr double kLargestChange = 3.0;
 constexpr std::size_t kMostProposals = 5;
@@ -110,32 +107,10 @@ std::vector<double> knots_over(const std::vector<double>& values, const std::vec
   const auto at = [&](double share) {
     return counted[static_cast<std::size_t>(share * static_cast<double>(counted.size() - 1))];
   };
-  const double least = kApart * (at(shares.back()) - at(shares.front()));
+  const double least = kKnotsApart * (at(shares.back()) - at(shares.front()));
   std::vector<double> knots;
   for (const double share : shares) {
     if (knots.empty() || at(share) - knots.back() > least) knots.push_back(at(share));
-  }
-  return knots.size() < kFewestKnots ? std::vector<double>{} : knots;
-}
-
-// Halfway between even steps of the range and of the samples: a bend may lie where samples are few.
-std::vector<double> knots_inside(const std::vector<double>& argument,
-                                 const std::vector<double>& weight) {
-  std::vector<double> counted;
-  for (std::size_t n = 0; n < argument.size(); ++n) {
-    if (weight[n] > 0.0) counted.push_back(argument[n]);
-  }
-  if (counted.size() < kInsideKnots) return {};
-  std::ranges::sort(counted);
-  const double low = counted.front();
-  const double range = counted.back() - low;
-  std::vector<double> knots;
-  for (std::size_t k = 0; k < kInsideKnots; ++k) {
-    const double share = static_cast<double>(k) / (kInsideKnots - 1);
-    const auto at = static_cast<std::size_t>(share * static_cast<double>(counted.size() - 1));
-    const double knot =
-        *std::ranges::lower_bound(counted, 0.5 * (counted[at] + low + share * range));
-    if (knots.empty() || knot - knots.back() > kApart * range) knots.push_back(knot);
   }
   return knots.size() < kFewestKnots ? std::vector<double>{} : knots;
 }
@@ -156,108 +131,7 @@ Columns hats(const std::vector<double>& over, const std::vector<double>& knots,
 
 bool is_gain(const Effect& effect) { return effect.form == kGain || effect.form == kSize; }
 
-// Between two knots: sum_i c_i (x - from)^i.
-struct Piece {
-  double from;
-  std::array<double, 4> c;
-
-  [[nodiscard]] double at(double value) const {
-    const double x = value - from;
-    return c[0] + x * (c[1] + x * (c[2] + x * c[3]));
-  }
-};
-
-// Of a curve of the input or inside the body the numbers are the knots, then as many heights.
-// Between knots a cubic whose slope at each is that of the parabola through it and its neighbours;
-// beyond the outer knots straight on.
-class SmoothCurve {
- public:
-  explicit SmoothCurve(const Effect& effect)
-      : numbers_(effect.parameters), knots_(effect.parameters.size() / 2) {
-    if (knots_ < kFewestKnots) throw std::out_of_range("three knots or more");
-  }
-
-  // Of the values up to knot k and above the one before it; their number: beyond the last one.
-  [[nodiscard]] Piece piece(std::size_t k) const {
-    if (k == 0 || k == knots_) {
-      const std::size_t end = k == 0 ? 0 : knots_ - 1;
-      return {x(end), {height(end), slope(end), 0.0, 0.0}};
-    }
-    const double width = x(k) - x(k - 1);
-    const double from = slope(k - 1);
-    const double to = slope(k);
-    return {x(k - 1),
-            {height(k - 1), from, (3.0 * rise(k) - 2.0 * from - to) / width,
-             (from + to - 2.0 * rise(k)) / (width * width)}};
-  }
-  [[nodiscard]] double at(double value) const {
-    std::size_t k = 0;
-    while (k < knots_ && value > x(k)) ++k;
-    return piece(k).at(value);
-  }
-
- private:
-  [[nodiscard]] double x(std::size_t k) const { return numbers_[k].value; }
-  [[nodiscard]] double height(std::size_t k) const { return numbers_[knots_ + k].value; }
-  // From the knot before it.
-  [[nodiscard]] double rise(std::size_t k) const {
-    return (height(k) - height(k - 1)) / (x(k) - x(k - 1));
-  }
-  [[nodiscard]] double slope(std::size_t k) const {
-    const std::size_t inner = std::clamp<std::size_t>(k, 1, knots_ - 2);
-    const double before = x(inner) - x(inner - 1);
-    const double behind = x(inner + 1) - x(inner);
-    const double curvature = (rise(inner + 1) - rise(inner)) / (before + behind);
-    return rise(inner) + curvature * (2.0 * x(k) - x(inner) - x(inner - 1));
-  }
-
-  const std::vector<Parameter>& numbers_;
-  std::size_t knots_;
-};
-
-// Heights over the straight line between the outer ones.
-std::vector<double> bends_of(const Effect& effect) {
-  const std::vector<double> knots = knots_of(effect);
-  std::vector<double> bends = named(effect, "height_");
-  if (bends.size() != knots.size()) throw std::out_of_range("a height for each knot");
-  const double first = bends.front();
-  const double slope = (bends.back() - first) / (knots.back() - knots.front());
-  for (std::size_t k = 0; k < knots.size(); ++k) bends[k] -= first + slope * (knots[k] - knots[0]);
-  return bends;
-}
-
 double height_at(const Effect& effect, double value) { return SmoothCurve(effect).at(value); }
-
-// phi of a curve inside the body: a loop asks it once a sample.
-class CurveInside {
- public:
-  explicit CurveInside(const Effect& effect) : knots_(knots_of(effect)) {
-    if (effect.parameters.size() != 2 * knots_.size()) {
-      throw std::out_of_range("a height for each knot");
-    }
-    const SmoothCurve curve(effect);
-    for (std::size_t k = 0; k <= knots_.size(); ++k) pieces_.push_back(curve.piece(k));
-  }
-
-  double operator()(double z, LoopMemory& /*memory*/) const {
-    std::size_t k = 0;
-    while (k < knots_.size() && z > knots_[k]) ++k;
-    return pieces_[k].at(z);
-  }
-
- private:
-  std::vector<double> knots_;
-  std::vector<Piece> pieces_;
-};
-
-Effect with_knots(const char* form, std::vector<std::string> channels, const std::string& unit,
-                  const std::vector<double>& knots) {
-  Effect effect{"free_form", form, std::move(channels), {}, {}};
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    effect.parameters.push_back(constant("knot_" + std::to_string(k + 1), unit, knots[k]));
-  }
-  return effect;
-}
 
 // 1 at the centre, 1 + change at the others.
 std::vector<double> factors_of(const Effect& effect) {
@@ -324,18 +198,20 @@ class FreeForm final : public EffectKind {
   [[nodiscard]] bool any_shape() const override { return true; }
   [[nodiscard]] Stage stage(const Effect& effect) const override {
     if (effect.form == kCurve) return Stage::kInputValue;
-    if (effect.form == kInside) return Stage::kFeedback;
+    if (effect.form == kCurveInside) return Stage::kFeedback;
     return is_gain(effect) ? Stage::kGain : Stage::kTerm;
   }
   [[nodiscard]] double mapped(const Effect& effect, double value) const override {
     return height_at(effect, value);
   }
   [[nodiscard]] Nonlinearity feedback(const Effect& effect) const override {
-    return {CurveInside(effect), 1.0};
+    return law_of_curve(effect);
   }
-  [[nodiscard]] std::optional<Effect> drawn_after(const std::vector<double>& argument,
-                                                  const std::vector<double>& phi,
-                                                  const std::vector<double>& weight) const override;
+  [[nodiscard]] std::optional<Effect> drawn_after(
+      const std::vector<double>& argument, const std::vector<double>& phi,
+      const std::vector<double>& weight) const override {
+    return curve_through(argument, phi, weight);
+  }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
     const std::vector<double> knots = knots_of(effect);
@@ -364,15 +240,15 @@ class FreeForm final : public EffectKind {
   // Next to the body or in front of it, a curve that one recording drew is no law for a motor.
   // Inside it is held at the ends of its range and bounded as any spring is.
   [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
-    if (effect.form == kInside) return EffectKind::body_role(effect);
+    if (effect.form == kCurveInside) return EffectKind::body_role(effect);
     return control::LeftOut{"a curve without a named law"};
   }
   [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
-    if (at.effect().form == kInside) {
-      const auto [low, high] = std::ranges::minmax(bends_of(at.effect()));
-      return {
-          {"range", at.model.output_unit, output_over_phi(at) * (high - low),
-           "of the curve without its straight part, from the lowest knot to the highest, at 0 Hz"}};
+    if (at.effect().form == kCurveInside) {
+      const auto [low, high] = std::ranges::minmax(SmoothCurve(at.effect()).bends());
+      return {{"range", at.model.output_unit, std::abs(output_over_phi(at)) * (high - low),
+               "of the curve without its straight part, from the lowest knot to the highest, at 0 "
+               "Hz"}};
     }
     const Curve shape = shape_of(at.effect());
     const auto [low, high] = std::ranges::minmax(shape.heights);
@@ -388,7 +264,7 @@ class FreeForm final : public EffectKind {
   [[nodiscard]] std::string evidence(const Effect& effect) const override;
   [[nodiscard]] std::optional<Curve> curve(const Effect& effect,
                                            const Signals& signals) const override {
-    if (effect.form == kCurve || effect.form == kInside) return {};  // its law shows it
+    if (effect.form == kCurve || effect.form == kCurveInside) return {};  // its law shows it
     Curve curve = shape_of(effect);
     if (effect.form == kFactor) curve.per = signals.at(effect.channels.at(0)).unit;
     return curve;
@@ -396,7 +272,9 @@ class FreeForm final : public EffectKind {
 };
 
 std::string FreeForm::evidence(const Effect& effect) const {
-  if (effect.form == kInside) return "no named kind bends as the curve inside the body does";
+  if (effect.form == kCurveInside) {
+    return "no named kind bends as the curve inside the body does; " + slopes_in_words(effect);
+  }
   const Curve shape = shape_of(effect);
   std::string text =
       "no named kind has this shape; the " + shape.of + " over " + shape.over + " is";
@@ -469,43 +347,6 @@ std::optional<Proposal> curve_of_input(const Screening& screening, Effect effect
   for (double& u : mapped.front()) u = height_at(effect, u);
   return with_body(screening, effect,
                    new_body(screening, mapped, screening.signals().output().values));
-}
-
-// Level, slope and size belong to the offset, the body and the paths: three heights are held, the
-// outer ones and that which is furthest from the straight line between them.
-std::optional<Effect> FreeForm::drawn_after(const std::vector<double>& argument,
-                                            const std::vector<double>& phi,
-                                            const std::vector<double>& weight) const {
-  constexpr double kWidest = 5.0;   // of the heights' range
-  constexpr double kNoCurve = 0.2;  // of phi's deviation: it has a memory
-  const std::vector<double> knots = knots_inside(argument, weight);
-  if (knots.empty()) return {};
-  Effect effect = with_knots(kInside, {}, "-", knots);
-  std::vector<double> heights;
-  for (const double knot : knots) {
-    const auto at = std::ranges::find(argument, knot) - argument.begin();
-    heights.push_back(phi[static_cast<std::size_t>(at)]);
-    effect.parameters.push_back(
-        constant("height_" + std::to_string(heights.size()), "-", heights.back()));
-  }
-  std::vector<double> missed = phi;
-  LoopMemory none;
-  const CurveInside curve(effect);
-  for (std::size_t n = 0; n < phi.size(); ++n) missed[n] -= curve(argument[n], none);
-  if (!(deviation_of(missed) < kNoCurve * deviation_of(phi))) return {};
-  const std::vector<double> bends = bends_of(effect);
-  const auto size = [](double bend) { return std::abs(bend); };
-  const auto furthest =
-      static_cast<std::size_t>(std::ranges::max_element(bends, {}, size) - bends.begin());
-  const auto [low, high] = std::ranges::minmax(heights);
-  for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
-    if (k == furthest) continue;
-    Parameter& height = effect.parameters[knots.size() + k];
-    height.lower = height.value - kWidest * (high - low);
-    height.upper = height.value + kWidest * (high - low);
-    height.fitted = true;
-  }
-  return effect;
 }
 
 std::vector<Proposal> FreeForm::proposed(const Screening& screening) const {

@@ -4,6 +4,7 @@
 #include <ceres/tiny_solver.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 
@@ -70,21 +71,16 @@ class CascadeFit {
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
 
   CascadeFit(const Body& like, const Cascade& start, const Signals& signals)
-      : like_(like), start_(start), signals_(signals), rest_(signals.output().values) {
-    weight_ = Eigen::Map<const Eigen::VectorXd>(signals.weight().data(), std::ssize(rest_));
+      : like_(like), start_(start), signals_(signals) {
+    weight_ = Eigen::Map<const Eigen::VectorXd>(signals.weight().data(), NumResiduals());
     for (const Stretch& stretch : signals.stretches()) {
       const auto skipped = static_cast<Eigen::Index>((stretch.end - stretch.first) / kUnknownStart);
       weight_.segment(static_cast<Eigen::Index>(stretch.first), skipped).setZero();
     }
     weight_ = weight_.cwiseSqrt() / signals.output().deviation;
-    for (std::size_t k = 1; k < signals.inputs().size(); ++k) {
-      const std::vector<double> other = through(
-          signals.inputs()[k].values, {like.numerators[k], like.denominator}, signals.stretches());
-      for (std::size_t n = 0; n < rest_.size(); ++n) rest_[n] -= other[n];
-    }
   }
 
-  [[nodiscard]] int NumResiduals() const { return static_cast<int>(rest_.size()); }
+  [[nodiscard]] int NumResiduals() const { return static_cast<int>(signals_.size()); }
   [[nodiscard]] int NumParameters() const { return static_cast<int>(packed(start_).size()); }
 
   bool operator()(const double* x, double* residuals, double* jacobian) const {
@@ -94,10 +90,17 @@ class CascadeFit {
     if (jacobian == nullptr) return true;
     Eigen::Map<Eigen::MatrixXd> columns(jacobian, NumResiduals(), NumParameters());
     for (Eigen::Index i = 0; i < numbers.size(); ++i) {
-      Eigen::VectorXd moved = numbers;
       const double step = kStep * std::max(std::abs(numbers[i]), kLeast);
-      moved[i] += step;
-      columns.col(i) = (residual_at(moved) - residual) / step;
+      const auto moved_by = [&](double by) {
+        Eigen::VectorXd moved = numbers;
+        moved[i] += by;
+        return residual_at(moved);
+      };
+      // A pole on its bound goes one way alone.
+      Eigen::VectorXd moved = moved_by(step);
+      const double by = is_refused(moved) ? -step : step;
+      if (by < 0.0) moved = moved_by(by);
+      columns.col(i) = (moved - residual) / by;
     }
     return true;
   }
@@ -132,7 +135,9 @@ class CascadeFit {
     run.residual.resize(std::ssize(y));
     for (std::size_t n = 0; n < y.size(); ++n) {
       const auto i = static_cast<Eigen::Index>(n);
-      run.residual[i] = weight_[i] == 0.0 ? 0.0 : weight_[i] * (rest_[n] - cascade.offset - y[n]);
+      run.residual[i] = weight_[i] == 0.0
+                            ? 0.0
+                            : weight_[i] * (signals_.output().values[n] - cascade.offset - y[n]);
     }
     return run;
   }
@@ -174,10 +179,13 @@ class CascadeFit {
     return Eigen::VectorXd::Constant(NumResiduals(), kRefused);
   }
 
+  static bool is_refused(const Eigen::VectorXd& residual) {
+    return residual[residual.size() - 1] == kRefused;
+  }
+
   const Body& like_;
   const Cascade& start_;
   const Signals& signals_;
-  std::vector<double> rest_;  // of the output, without the other inputs' part
   Eigen::VectorXd weight_;
 };
 
@@ -204,6 +212,14 @@ std::optional<Cascade> redrawn(Cascade cascade, const Body& like, const EffectKi
   return cascade;
 }
 
+// Within the body's bounds for its poles.
+Polynomial bounded(const Polynomial& denominator, const Body& like) {
+  Body body = like;
+  body.denominator = denominator;
+  if (!is_stable(body)) stabilise(body);
+  return body.denominator;
+}
+
 // Without a bend: the argument has a deviation of 1, and the gain is the one of least squares.
 std::optional<Cascade> started(const Polynomial& before, const Polynomial& behind,
                                const EffectKind& drawer, const Signals& signals) {
@@ -224,13 +240,16 @@ std::optional<Cascade> started(const Polynomial& before, const Polynomial& behin
   if (!curve) return {};
   start.curve = *std::move(curve);
   const std::vector<double> y = through(z, start.behind, stretches);
-  const Eigen::Map<const Eigen::VectorXd> answer(y.data(), std::ssize(y));
-  const auto& measured = signals.output();
-  const Eigen::Map<const Eigen::VectorXd> output(measured.values.data(), std::ssize(y));
-  const double gain = answer.dot(output) / answer.squaredNorm();
+  const auto about_mean = [&](const std::vector<double>& x) {
+    const Eigen::Map<const Eigen::ArrayXd> values(x.data(), std::ssize(x));
+    const Eigen::Map<const Eigen::ArrayXd> weight(signals.weight().data(), std::ssize(x));
+    return Eigen::VectorXd(weight * (values - (weight * values).sum() / weight.sum()));
+  };
+  const Eigen::VectorXd answer = about_mean(y);
+  const double gain = answer.dot(about_mean(signals.output().values)) / answer.squaredNorm();
   if (gain == 0.0 || !std::isfinite(gain)) return {};
   start.behind.numerator.front() = gain;
-  start.offset = measured.mean;
+  start.offset = signals.output().mean;
   return start;
 }
 
@@ -263,6 +282,7 @@ Model as_model(const Cascade& cascade, const Model& like) {
 std::optional<Model> cascade(const Model& model, const EffectKind& drawer, const Signals& signals) {
   constexpr int kFirst = 8;  // steps of each, and of the best one
   constexpr int kLast = 30;
+  if (model.inputs.size() != 1) return {};
   const auto groups = groups_of(model.body.denominator);
   Cascade best;
   for (std::size_t split = 1; split < groups.size(); ++split) {
@@ -272,8 +292,9 @@ std::optional<Model> cascade(const Model& model, const EffectKind& drawer, const
       side.insert(side.end(), groups[i].begin(), groups[i].end());
     }
     for (const bool slow_first : {false, true}) {
-      auto start = started(with_poles(poles[slow_first ? 1 : 0]),
-                           with_poles(poles[slow_first ? 0 : 1]), drawer, signals);
+      auto start =
+          started(bounded(with_poles(poles[slow_first ? 1 : 0]), model.body),
+                  bounded(with_poles(poles[slow_first ? 0 : 1]), model.body), drawer, signals);
       if (!start) continue;
       Cascade tried = fitted(model.body, *start, signals, kFirst);
       if (tried.error < best.error) best = std::move(tried);
@@ -281,8 +302,9 @@ std::optional<Model> cascade(const Model& model, const EffectKind& drawer, const
   }
   for (int pass = 0; pass < 2 && std::isfinite(best.error); ++pass) {
     const auto start = redrawn(best, model.body, drawer, signals);
-    if (!start) return {};
-    best = fitted(model.body, *start, signals, kLast);
+    if (!start) break;
+    Cascade tried = fitted(model.body, *start, signals, kLast);
+    if (tried.error < best.error) best = std::move(tried);
   }
   if (!std::isfinite(best.error)) return {};
   return as_model(best, model);

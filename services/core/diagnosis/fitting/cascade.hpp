@@ -11,12 +11,12 @@
 /// other's poles.
 namespace stillhand::diagnosis {
 
-/// METHOD Eq. DG-91: the first input through B_1/A_1, a curve, and B_2/A_2, as one body with the
+/// METHOD Eq. DG-91: the input through B_1/A_1, a curve, and B_2/A_2, as one body with the
 /// poles of both.  The poles begin at those of `model`, shared out in every way that leaves the
 /// slower ones on one side; the best of these fits.
 /// @param model  ends with a nonlinearity inside the body, and has no other effect
 /// @param drawer  draws the curve (EffectKind::drawn_after)
-/// @return nullopt where no fit is finite
+/// @return nullopt where no fit is finite, or the model has several inputs
 std::optional<Model> cascade(const Model& model, const EffectKind& drawer, const Signals& signals);
 
 }  // namespace stillhand::diagnosis

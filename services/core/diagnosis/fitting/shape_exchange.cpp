@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
@@ -47,32 +50,56 @@ std::vector<double> shaped(const Effect& effect, const std::vector<double>& z, d
   return phi;
 }
 
-// phi(z) ~ alpha psi(z / beta) + gamma z
+// phi(z) ~ alpha psi(z / beta) + gamma z + level
 struct Match {
   double alpha = 0.0;
   double beta = 1.0;
   double gamma = 0.0;
-  double left = std::numeric_limits<double>::infinity();  // sum of squares
+  double level = 0.0;
+  double left = std::numeric_limits<double>::infinity();  // root of the sum of squares
 };
 
 Eigen::Map<const Eigen::VectorXd> column(const std::vector<double>& x) {
   return {x.data(), static_cast<Eigen::Index>(x.size())};
 }
 
-Match matched(const Effect& own, const Effect& other, const std::vector<double>& z,
-              const Signals& signals) {
-  constexpr std::array kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
-  const std::vector<double> phi = shaped(own, z, 1.0, signals);
+// @param columns  z, then a constant where there is to be a level; room for psi in front of them
+Match matched(const std::vector<double>& phi, const Effect& other, const std::vector<double>& z,
+              std::span<const double> scales, Eigen::MatrixXd columns, const Signals& signals) {
   Match best;
-  for (const double beta : kScales) {
-    const std::vector<double> psi = shaped(other, z, beta, signals);
-    Eigen::MatrixXd columns(static_cast<Eigen::Index>(z.size()), 2);
-    columns << column(psi), column(z);
-    const Eigen::Vector2d factors = columns.colPivHouseholderQr().solve(column(phi));
-    const double left = (column(phi) - columns * factors).squaredNorm();
-    if (left < best.left) best = {factors[0], beta, factors[1], left};
+  for (const double beta : scales) {
+    columns.col(0) = column(shaped(other, z, beta, signals));
+    const Eigen::VectorXd factors = columns.colPivHouseholderQr().solve(column(phi));
+    const double left = (column(phi) - columns * factors).norm();
+    if (left < best.left) {
+      best = {factors[0], beta, factors[1], factors.size() > 2 ? factors[2] : 0.0, left};
+    }
   }
   return best;
+}
+
+// The model with `other` in place of its last effect, as it was matched.
+std::optional<Model> exchanged(const Model& model, const Effect& other, const Match& match,
+                               const Signals& signals) {
+  const std::size_t order = model.body.order();
+  const LoopPath own = loop_path(model.effects.back(), order);
+  Model result = model;
+  const Polynomial& a = model.body.denominator;
+  const auto gain = [](const Polynomial& c) { return std::accumulate(c.begin(), c.end(), 0.0); };
+  result.body.offset += match.level * gain(own.e) / gain(a);
+  result.body.denominator = sum(a, -match.gamma, own.m);
+  Polynomial& b = result.body.numerators.front();
+  b = quotient(sum(product(b, result.body.denominator), match.gamma, product(own.e, own.n)), a,
+               order + 1);
+  LoopPath path = own;
+  for (double& each : path.e) each *= match.alpha;
+  for (double& each : path.n) each /= match.beta;
+  for (double& each : path.m) each *= match.alpha / match.beta;
+  result.effects.back() = other;
+  result.effects.back().coefficients = coefficients_of(path);
+  if (!is_stable(result.body)) stabilise(result.body);
+  if (!free_run(result, signals).finite) return std::nullopt;
+  return result;
 }
 
 }  // namespace
@@ -107,46 +134,32 @@ Model lifted(const Model& model) {
 
 std::optional<Model> with_shape_of(const Effect& other, const Model& model,
                                    const Signals& signals) {
+  constexpr std::array kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
   const FreeRun run = free_run(model, signals);
   if (!run.finite) return std::nullopt;
-  const std::size_t order = model.body.order();
-  const LoopPath own = loop_path(model.effects.back(), order);
-  const Match match = matched(model.effects.back(), other, run.argument, signals);
-  Model result = model;
-  const Polynomial& a = model.body.denominator;
-  result.body.denominator = sum(a, -match.gamma, own.m);
-  Polynomial& b = result.body.numerators.front();
-  b = quotient(sum(product(b, result.body.denominator), match.gamma, product(own.e, own.n)), a,
-               order + 1);
-  LoopPath path = own;
-  for (double& each : path.e) each *= match.alpha;
-  for (double& each : path.n) each /= match.beta;
-  for (double& each : path.m) each *= match.alpha / match.beta;
-  result.effects.back() = other;
-  result.effects.back().coefficients = coefficients_of(path);
-  if (!is_stable(result.body)) stabilise(result.body);
-  if (!free_run(result, signals).finite) return std::nullopt;
-  return result;
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(signals.size()), 2);
+  columns.col(1) = column(run.argument);
+  const Match match = matched(shaped(model.effects.back(), run.argument, 1.0, signals), other,
+                              run.argument, kScales, std::move(columns), signals);
+  return exchanged(model, other, match, signals);
 }
 
-double bend_unread(const Effect& curve, const Effect& law, const std::vector<double>& z,
-                   const Signals& signals) {
-  constexpr std::array kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
-  const std::vector<double> phi = shaped(curve, z, 1.0, signals);
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(z.size()), 3);
-  columns.col(0).setOnes();
-  columns.col(1) = column(z);
-  const auto left_by = [&](Eigen::Index count) {
-    const auto used = columns.leftCols(count);
-    return (column(phi) - used * used.colPivHouseholderQr().solve(column(phi))).norm();
-  };
-  const double bend = left_by(2);
-  double least = bend;
-  for (const double beta : kScales) {
-    columns.col(2) = column(shaped(law, z, beta, signals));
-    least = std::min(least, left_by(3));
-  }
-  return bend > 0.0 ? least / bend : 0.0;
+Reading read_as(const Effect& law, const Model& curve, const Signals& signals) {
+  constexpr int kScales = 29;  // from 0.08 to 12, a fifth apart
+  const FreeRun run = free_run(curve, signals);
+  if (!run.finite) return {};
+  const std::vector<double> phi = shaped(curve.effects.back(), run.argument, 1.0, signals);
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(signals.size()), 3);
+  columns.col(1) = column(run.argument);
+  columns.col(2).setOnes();
+  const auto straight = columns.rightCols(2);
+  const double bend =
+      (column(phi) - straight * straight.colPivHouseholderQr().solve(column(phi))).norm();
+  if (!(bend > 0.0)) return {};
+  std::vector<double> scales;
+  for (int i = 0; i < kScales; ++i) scales.push_back(std::pow(1.2, i - kScales / 2));
+  const Match match = matched(phi, law, run.argument, scales, std::move(columns), signals);
+  return {match.left / bend, exchanged(curve, law, match, signals)};
 }
 
 }  // namespace stillhand::diagnosis

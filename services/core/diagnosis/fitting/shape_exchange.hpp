@@ -29,10 +29,14 @@ Model lifted(const Model& model);
 /// @return nullopt where that is unstable or runs away
 std::optional<Model> with_shape_of(const Effect& other, const Model& model, const Signals& signals);
 
-/// The share of a curve's bend (what a straight line leaves of phi over `z`) that a law leaves, at
-/// the best scale of its argument, with any factor and straight line, METHOD Eq. DG-90.
-/// @return 0 to 1 [-] of the RMS; 0 without a bend
-double bend_unread(const Effect& curve, const Effect& law, const std::vector<double>& z,
-                   const Signals& signals);
+/// How well a law describes a curve.
+struct Reading {
+  double unread = 1.0;         ///< [-] of the curve's bend (RMS) that the law leaves
+  std::optional<Model> model;  ///< with the law in the curve's place
+};
+
+/// METHOD Eq. DG-90: the last effect's curve by a law, at the best scale of its argument, with any
+/// factor, slope and level.  The bend is what a straight line over z leaves of phi.
+Reading read_as(const Effect& law, const Model& curve, const Signals& signals);
 
 }  // namespace stillhand::diagnosis

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "services/core/contract/expects.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
