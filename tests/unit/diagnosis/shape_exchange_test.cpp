@@ -122,7 +122,7 @@ TEST_F(ShapeExchangeTest, OnlyANonlinearityInsideTheBodyIsOne) {
 }
 
 // Eq. DG-90, wherever the threshold lies: the scale of z is the fit's.  Far out, where few samples
-// are, eleven knots round the corners off by more.
+// are, fifteen knots round the corners off by more.
 TEST_F(ShapeExchangeTest, ACurveIsReadByTheLawThatDrewIt) {
   for (const double threshold : {0.4, 0.55, 0.7, 0.85, 1.0}) {
     const Model model = sprung(play_, -0.05, threshold * size_);

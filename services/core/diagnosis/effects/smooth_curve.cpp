@@ -11,7 +11,7 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr std::size_t kMostKnotsInside = 11;
+constexpr std::size_t kMostKnotsInside = 15;
 
 // A loop asks it once a sample.
 class LaidOut {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <tuple>
 
 #include "services/core/diagnosis/fitting/shape_exchange.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
@@ -193,7 +194,7 @@ Cascade fitted(const Body& like, const Cascade& start, const Signals& signals, i
   const CascadeFit problem(like, start, signals);
   ceres::TinySolver<CascadeFit> solver;
   solver.options.max_num_iterations = iterations;
-  solver.options.function_tolerance = 1e-6;
+  solver.options.function_tolerance = 1e-8;
   solver.options.gradient_tolerance = 1e-12;
   Eigen::VectorXd numbers = CascadeFit::packed(start);
   solver.Solve(problem, &numbers);
@@ -253,15 +254,26 @@ std::optional<Cascade> started(const Polynomial& before, const Polynomial& behin
   return start;
 }
 
-// Each pair of complex poles once, and the real ones, the fastest turning first.
-std::vector<std::vector<std::complex<double>>> groups_of(const Polynomial& denominator) {
-  std::vector<std::vector<std::complex<double>>> groups;
-  for (const auto& pole : signal::poles({1.0, denominator, denominator})) {
-    if (pole.imag() > 1e-9) groups.push_back({pole, std::conj(pole)});
-    if (std::abs(pole.imag()) <= 1e-9) groups.push_back({pole.real()});
+using Poles = std::vector<std::complex<double>>;
+
+// The fastest first; the two of a pair are neighbours.
+Poles poles_of(const Polynomial& denominator) {
+  Poles poles = signal::poles({1.0, denominator, denominator});
+  std::ranges::sort(poles, {}, [](const std::complex<double>& pole) {
+    return std::tuple(-std::abs(1.0 - pole), pole.real(), pole.imag());
+  });
+  return poles;
+}
+
+// The first ones, and the others.  A pair that is torn apart leaves a real pole on either side.
+std::array<Poles, 2> shared_out(Poles poles, std::size_t split) {
+  std::complex<double>& last = poles[split - 1];
+  std::complex<double>& next = poles[split];
+  if (last.imag() != 0.0 && std::abs(last - std::conj(next)) < 1e-9) {
+    last = next = std::copysign(std::abs(last), last.real());
   }
-  std::ranges::sort(groups, {}, [](const auto& group) { return -std::abs(1.0 - group.front()); });
-  return groups;
+  const auto middle = poles.begin() + static_cast<std::ptrdiff_t>(split);
+  return {Poles(poles.begin(), middle), Poles(middle, poles.end())};
 }
 
 Model as_model(const Cascade& cascade, const Model& like) {
@@ -280,17 +292,13 @@ Model as_model(const Cascade& cascade, const Model& like) {
 }  // namespace
 
 std::optional<Model> cascade(const Model& model, const EffectKind& drawer, const Signals& signals) {
-  constexpr int kFirst = 8;  // steps of each, and of the best one
-  constexpr int kLast = 30;
+  constexpr int kFirst = 40;  // steps of each, and of the best one with knots where z lies by then
+  constexpr int kLast = 60;
   if (model.inputs.size() != 1) return {};
-  const auto groups = groups_of(model.body.denominator);
+  const Poles all = poles_of(model.body.denominator);
   Cascade best;
-  for (std::size_t split = 1; split < groups.size(); ++split) {
-    std::array<std::vector<std::complex<double>>, 2> poles;
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      auto& side = poles[i < split ? 0 : 1];
-      side.insert(side.end(), groups[i].begin(), groups[i].end());
-    }
+  for (std::size_t split = 1; split < all.size(); ++split) {
+    const std::array<Poles, 2> poles = shared_out(all, split);
     for (const bool slow_first : {false, true}) {
       auto start =
           started(bounded(with_poles(poles[slow_first ? 1 : 0]), model.body),
