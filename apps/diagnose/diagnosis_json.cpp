@@ -150,6 +150,15 @@ ordered_json limits_json(const Diagnosis& diagnosis) {
   return json;
 }
 
+ordered_json shares_json(const std::optional<diagnosis::NameCounts>& counted) {
+  ordered_json shares;
+  if (!counted) return shares;
+  for (const auto& [name, count] : counted->counts) {
+    shares[name] = static_cast<double>(count) / counted->repetitions;
+  }
+  return shares;
+}
+
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& diagnosis) {
@@ -168,12 +177,6 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const diagnosis::NoiseEstimate& each : diagnosis.noise_floor.estimates) {
     estimates[each.name] = each.rmse;
   }
-  ordered_json stability;
-  if (diagnosis.stability) {
-    for (const auto& [verdict, count] : diagnosis.stability->counts) {
-      stability[verdict] = static_cast<double>(count) / diagnosis.stability->repetitions;
-    }
-  }
   const ordered_json json{{"input", inputs_of(diagnosis)},
                           {"output", diagnosis.options.output},
                           {"output_unit", diagnosis.output_unit},
@@ -188,7 +191,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                           {"detection_limit", or_null(diagnosis.detection_limit)},
                           {"detection_limits", limits_json(diagnosis)},
                           {"verdict", diagnosis.verdict()},
-                          {"stability", stability},
+                          {"drawn_names", shares_json(diagnosis.drawn_names)},
+                          {"stability", shares_json(diagnosis.stability)},
                           {"no_model", no_model_json(diagnosis)},
                           {"screening", measurement::screening_json(diagnosis.screening)},
                           {"least_force_n", least_force_json(diagnosis)},
@@ -223,6 +227,9 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
       : !diagnosis.no_model && diagnosis.options.search.most_effects == 0
           ? "; no effect was looked for (--most-effects 0)"
           : "");
+  if (diagnosis.drawn_names && !diagnosis.effects.empty()) {
+    add("draws         {}\n", draws_in_words(*diagnosis.drawn_names));
+  }
   if (diagnosis.stability) add("stability     {}\n", stability_in_words(*diagnosis.stability));
   if (diagnosis.no_model) {
     add("              {}: {}\n", diagnosis.no_model->reason, diagnosis.no_model->why);

@@ -145,9 +145,10 @@ Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& re
   Page page(
       "Diagnosis: " + found.options.output + " from " + first.substr(first.find_last_of('/') + 1) +
           (recordings.size() == 1 ? "" : " and " + std::to_string(recordings.size() - 1) + " more"),
-      found.stability
-          ? fmt::format("{} {}.", verdict_in_words(found), stability_in_words(*found.stability))
-          : verdict_in_words(found));
+      fmt::format(
+          "{}{}{}", verdict_in_words(found),
+          found.drawn_names ? fmt::format(" {}.", draws_in_words(*found.drawn_names)) : "",
+          found.stability ? fmt::format(" {}.", stability_in_words(*found.stability)) : ""));
   std::vector<std::string> notes = found.notes;
   for (const diagnosis::SampleFault& fault : found.screening) {
     page.warning(fault.says);

@@ -11,6 +11,12 @@
 namespace stillhand::diagnose {
 namespace {
 
+// As a reader writes a kind.
+std::string spaced(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
 using diagnosis::Diagnosis;
 using diagnosis::FoundEffect;
 using report::short_number;
@@ -208,15 +214,23 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
          ". It depends on none of the quantities that were tested.";
 }
 
-std::string stability_in_words(const diagnosis::VerdictStability& stability) {
+std::string stability_in_words(const diagnosis::NameCounts& stability) {
   std::vector<std::string> words;
   for (const auto& [verdict, count] : stability.counts) {
-    std::string words_of = verdict;
-    std::ranges::replace(words_of, '_', ' ');
-    words.push_back(fmt::format("{} ({})", words_of, count));
+    words.push_back(fmt::format("{} ({})", spaced(verdict), count));
   }
   return fmt::format("{} repetitions without a fifth of the recording end in {}",
                      stability.repetitions, fmt::join(words, ", "));
+}
+
+std::string draws_in_words(const diagnosis::NameCounts& draws) {
+  std::vector<std::string> words;
+  for (const auto& [name, count] : draws.counts) {
+    words.push_back(
+        fmt::format("{}{} in {}", spaced(name), words.empty() ? " is named" : "", count));
+  }
+  return fmt::format("Of {} draws of the recording's blocks, {}", draws.repetitions,
+                     fmt::join(words, ", "));
 }
 
 }  // namespace stillhand::diagnose

@@ -42,6 +42,8 @@ bool none_carried(const diagnosis::Diagnosis& diagnosis);
 std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis);
 
 /// "20 repetitions without a fifth of the recording end in hysteresis (17), dead zone (3)"
-std::string stability_in_words(const diagnosis::VerdictStability& stability);
+std::string stability_in_words(const diagnosis::NameCounts& stability);
+/// "Of 100 draws of the recording's blocks, hysteresis is named in 83, dead zone in 17"
+std::string draws_in_words(const diagnosis::NameCounts& draws);
 
 }  // namespace stillhand::diagnose

@@ -243,6 +243,9 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   }
   judge(diagnosis, working, signals, blocks);
   look_at_the_rest(diagnosis, signals, blocks, questions);
+  if (!diagnosis.no_model && options.search.most_effects > 0) {
+    diagnosis.drawn_names = drawn_names(diagnosis.search, options.search);
+  }
   return diagnosis;
 }
 

@@ -11,6 +11,7 @@
 #include "services/core/diagnosis/carried.hpp"
 #include "services/core/diagnosis/detection/detection.hpp"
 #include "services/core/diagnosis/detection/noise_floor.hpp"
+#include "services/core/diagnosis/drawn_names.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/size.hpp"
 #include "services/core/diagnosis/no_model.hpp"
@@ -78,13 +79,6 @@ struct FoundEffect {
   std::vector<Size> sizes;        ///< physical numbers with their standard errors
 };
 
-/// How many repetitions on disturbed recordings end in which verdict, METHOD Eq. DG-83.
-struct VerdictStability {
-  int repetitions = 0;
-  /// The kind of the strongest effect, or a verdict without one; the most frequent first.
-  std::vector<std::pair<std::string, int>> counts;
-};
-
 /// The verdict and everything that it is based on.
 struct Diagnosis {
   DiagnoseOptions options;
@@ -98,17 +92,20 @@ struct Diagnosis {
   std::vector<FoundEffect> effects;
   HeldOutError final_error;
   std::optional<Unexplained> unexplained;
-  std::optional<NoModel> no_model;     ///< the inputs don't explain the output
-  std::vector<SampleFault> screening;  ///< of the recording
-  std::vector<PlantedLimit> limits;    ///< of a further effect, by kind, Eq. DG-62
-  double detection_limit = 0.0;        ///< [unit of the output] their typical one, or 0
-  Model model;                         ///< baseline and effects, fitted together to all samples
-  CarriedModel carried;                ///< what predicts other recordings
-  HeldOutError carried_error;          ///< of `carried`, judged as final_error
-  DetectionResult before;              ///< of the baseline's residual
-  DetectionResult after;               ///< of the final model's
-  SearchResult search;                 ///< the candidates of every step
-  std::optional<VerdictStability> stability;  ///< of verdict_stability(), where it was asked for
+  std::optional<NoModel> no_model;        ///< the inputs don't explain the output
+  std::vector<SampleFault> screening;     ///< of the recording
+  std::vector<PlantedLimit> limits;       ///< of a further effect, by kind, Eq. DG-62
+  double detection_limit = 0.0;           ///< [unit of the output] their typical one, or 0
+  Model model;                            ///< baseline and effects, fitted together to all samples
+  CarriedModel carried;                   ///< what predicts other recordings
+  HeldOutError carried_error;             ///< of `carried`, judged as final_error
+  DetectionResult before;                 ///< of the baseline's residual
+  DetectionResult after;                  ///< of the final model's
+  SearchResult search;                    ///< the candidates of every step
+  std::optional<NameCounts> drawn_names;  ///< of the strongest effect, METHOD Eq. DG-92
+  /// Of verdict_stability(), where it was asked for: the kind of the strongest effect, or a verdict
+  /// without one.
+  std::optional<NameCounts> stability;
 
   /// "no model", or "effects found" if one of them counts.
   [[nodiscard]] std::string verdict() const;

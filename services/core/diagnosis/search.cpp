@@ -13,17 +13,6 @@
 namespace stillhand::diagnosis {
 namespace {
 
-bool shows_in_rows(const Effect& effect) { return effect_kind(effect.kind).shows_in_rows(effect); }
-
-bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
-                     std::size_t candidates, const SearchOptions& options) {
-  const Comparison comparison = compared(current, trial.held_out);
-  // Bursts lie in few blocks, too few for the signs; that they stand out has been tested already.
-  if (passes_over_samples(trial)) return 1.0 - comparison.rmse_ratio > options.large_fall;
-  if (shows_in_rows(trial.model.effects.back())) return 1.0 - comparison.rmse_ratio > least_fall;
-  return worth_it(comparison, options, least_fall, candidates);
-}
-
 bool has_any_shape(const Trial& trial) {
   return effect_kind(trial.model.effects.back().kind).any_shape();
 }
@@ -34,16 +23,6 @@ bool asks_recordings(const Trial& trial) {
   return !passes_over_samples(trial) && !effect_kind(effect.kind).time_only(effect);
 }
 
-// The first of them that the rows show and that is worth adding; their number if there is none.
-std::size_t shown_in_rows(const std::vector<Trial>& tried,
-                          const std::function<bool(const Trial&)>& worth_adding) {
-  const auto found = std::ranges::find_if(tried, [&](const Trial& trial) {
-    return std::isfinite(trial.rmse) && shows_in_rows(trial.model.effects.back()) &&
-           worth_adding(trial);
-  });
-  return static_cast<std::size_t>(found - tried.begin());
-}
-
 // Which of them is to be added, if any: the chosen one, unless one of the recordings that were
 // joined refutes it; then the next.  Those that are refuted leave `tried`.
 std::optional<std::size_t> confirmed(std::vector<Trial>& tried, const HeldOut& current,
@@ -51,13 +30,8 @@ std::optional<std::size_t> confirmed(std::vector<Trial>& tried, const HeldOut& c
                                      const SearchOptions& options, SearchResult& result) {
   const std::size_t candidates = tried.size();
   std::vector<double> before;
-  const auto worth_adding = [&](const Trial& trial) {
-    return is_worth_adding(trial, current, least_fall, candidates, options);
-  };
   while (!tried.empty() && std::isfinite(tried.front().rmse)) {
-    std::size_t chosen = chosen_of(tried, current.rmse(), options, worth_adding);
-    // What the rows show is there, whatever chance may have made of the blocks.
-    if (!worth_adding(tried[chosen])) chosen = shown_in_rows(tried, worth_adding);
+    const std::size_t chosen = added_of(tried, current, least_fall, candidates, options);
     if (chosen == tried.size()) break;
     const Trial& trial = tried[chosen];
     if (!recordings.several() || !asks_recordings(trial)) return chosen;
@@ -85,7 +59,8 @@ bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
   };
   for (std::size_t e = 0; e + 1 < result.model.effects.size(); ++e) {
     const Effect& effect = result.model.effects[e];
-    if (effect_kind(effect.kind).stage(effect) == Stage::kWeight || shows_in_rows(effect)) continue;
+    const EffectKind& kind = effect_kind(effect.kind);
+    if (kind.stage(effect) == Stage::kWeight || kind.shows_in_rows(effect)) continue;
     Model without = result.model;
     without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(e));
     if (!is_whole &&

@@ -34,6 +34,11 @@ std::ptrdiff_t place_of(const std::string& kind) {
   return std::ranges::find(effect_kinds(), kind, &EffectKind::name) - effect_kinds().begin();
 }
 
+bool shows_in_rows(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return effect_kind(effect.kind).shows_in_rows(effect);
+}
+
 // METHOD Eq. DG-50: an error and what its numbers cost.
 double schwarz(const Trial& trial) {
   if (!std::isfinite(trial.rmse)) return std::numeric_limits<double>::infinity();
@@ -77,6 +82,11 @@ bool is_rounding(double rmse, const Signals& signals) {
 
 bool by_rmse(const Trial& a, const Trial& b) { return a.rmse < b.rmse; }
 
+bool passes_over_samples(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return effect_kind(effect.kind).stage(effect) == Stage::kWeight;
+}
+
 bool ties_with(const Trial& other, const Trial& best, double current_rmse,
                const SearchOptions& options) {
   if (compared(other.held_out, best.held_out).t < 1.0) return true;
@@ -112,6 +122,29 @@ std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
   return *std::ranges::min_element(ties, {}, [&](std::size_t i) {
     return std::pair(place_of(tried[i].model.effects.back().kind), tried[i].rmse);
   });
+}
+
+bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
+                     std::size_t candidates, const SearchOptions& options) {
+  const Comparison comparison = compared(current, trial.held_out);
+  // Bursts lie in few blocks, too few for the signs; that they stand out has been tested already.
+  if (passes_over_samples(trial)) return 1.0 - comparison.rmse_ratio > options.large_fall;
+  if (shows_in_rows(trial)) return 1.0 - comparison.rmse_ratio > least_fall;
+  return worth_it(comparison, options, least_fall, candidates);
+}
+
+std::size_t added_of(const std::vector<Trial>& tried, const HeldOut& current, double least_fall,
+                     std::size_t candidates, const SearchOptions& options) {
+  const auto worth_adding = [&](const Trial& trial) {
+    return is_worth_adding(trial, current, least_fall, candidates, options);
+  };
+  const std::size_t chosen = chosen_of(tried, current.rmse(), options, worth_adding);
+  if (worth_adding(tried[chosen])) return chosen;
+  // What the rows show is there, whatever chance may have made of the blocks.
+  const auto shown = std::ranges::find_if(tried, [&](const Trial& trial) {
+    return std::isfinite(trial.rmse) && shows_in_rows(trial) && worth_adding(trial);
+  });
+  return static_cast<std::size_t>(shown - tried.begin());
 }
 
 std::vector<std::string> tied_kinds(const std::vector<Trial>& tried, std::size_t chosen,

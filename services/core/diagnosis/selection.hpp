@@ -46,6 +46,8 @@ struct Trial {
 };
 
 bool by_rmse(const Trial& a, const Trial& b);
+/// True when the last effect leaves samples out and explains none.
+bool passes_over_samples(const Trial& trial);
 
 /// True when the residual is no more than rounding of the output's own numbers.
 bool is_rounding(double rmse, const Signals& signals);
@@ -61,6 +63,15 @@ bool ties_with(const Trial& other, const Trial& best, double current_rmse,
 std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
                       const SearchOptions& options,
                       const std::function<bool(const Trial&)>& worth_adding = {});
+/// True when it is to be added if it is chosen, Eq. DG-17 and DG-89.
+/// @param current  held out, without any of them
+/// @param candidates  so many were tried
+bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
+                     std::size_t candidates, const SearchOptions& options);
+/// The one to be added: the chosen one, or the first that the rows show; their number if there is
+/// none.
+std::size_t added_of(const std::vector<Trial>& tried, const HeldOut& current, double least_fall,
+                     std::size_t candidates, const SearchOptions& options);
 /// Other kinds that tie with the chosen one.
 std::vector<std::string> tied_kinds(const std::vector<Trial>& tried, std::size_t chosen,
                                     double current_rmse, const SearchOptions& options);

@@ -125,11 +125,6 @@ void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals
 
 }  // namespace
 
-bool passes_over_samples(const Trial& trial) {
-  const Effect& effect = trial.model.effects.back();
-  return effect_kind(effect.kind).stage(effect) == Stage::kWeight;
-}
-
 void start_afresh(Model& model, const Signals& signals, int order) {
   constexpr double kWorthPoles = 0.98;  // of the squared error
   std::vector<double> left = signals.output().values;

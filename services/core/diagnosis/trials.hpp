@@ -28,9 +28,6 @@ enum class Shapes { kNamed, kAny };
 Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, int iterations,
                    bool refitting);
 
-/// True when the last effect leaves samples out and explains none.
-bool passes_over_samples(const Trial& trial);
-
 /// The body that was fitted without the effects may be in a local minimum.  A body estimated again
 /// from what the effects leave of the output replaces it where it is better.  The full order is
 /// tried too: an effect may have hidden poles of a body whose order was reduced.

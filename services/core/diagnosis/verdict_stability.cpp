@@ -46,8 +46,8 @@ Measurement disturbed(const Measurement& measurement, const std::string& output,
   return other;
 }
 
-VerdictStability verdict_stability(const Measurement& measurement, const DiagnoseOptions& options,
-                                   int repetitions) {
+NameCounts verdict_stability(const Measurement& measurement, const DiagnoseOptions& options,
+                             int repetitions) {
   std::map<std::string, int> counts;
   for (int i = 1; i <= repetitions; ++i) {
     DiagnoseOptions own = options;
@@ -57,7 +57,7 @@ VerdictStability verdict_stability(const Measurement& measurement, const Diagnos
     };
     ++counts[in_one_word(diagnose(disturbed(measurement, options.output, i), own))];
   }
-  VerdictStability stability{repetitions, {counts.begin(), counts.end()}};
+  NameCounts stability{repetitions, {counts.begin(), counts.end()}};
   std::ranges::stable_sort(stability.counts, std::ranges::greater(),
                            &std::pair<std::string, int>::second);
   return stability;

@@ -18,7 +18,7 @@ Measurement disturbed(const Measurement& measurement, const std::string& output,
 /// Diagnoses the disturbed recording again and again, the same for the same arguments.
 /// @param repetitions  at least 1
 /// @throws as diagnose()
-VerdictStability verdict_stability(const Measurement& measurement, const DiagnoseOptions& options,
-                                   int repetitions);
+NameCounts verdict_stability(const Measurement& measurement, const DiagnoseOptions& options,
+                             int repetitions);
 
 }  // namespace stillhand::diagnosis

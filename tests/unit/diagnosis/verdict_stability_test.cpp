@@ -38,12 +38,12 @@ DiagnoseOptions options_of() {
 }
 
 TEST(VerdictStabilityTest, AClearEffectComesBackAlways) {
-  const VerdictStability sut = verdict_stability(with_friction(1.0), options_of(), 4);
+  const NameCounts sut = verdict_stability(with_friction(1.0), options_of(), 4);
   EXPECT_THAT(sut.counts, ElementsAre(Pair("coulomb_friction", 4)));
 }
 
 TEST(VerdictStabilityTest, NothingIsCountedByItsVerdict) {
-  const VerdictStability sut = verdict_stability(with_friction(0.0), options_of(), 4);
+  const NameCounts sut = verdict_stability(with_friction(0.0), options_of(), 4);
   EXPECT_THAT(sut.counts, ElementsAre(Pair("nothing missing", 4)));
 }
 
