@@ -181,6 +181,17 @@ TEST(DiagnosisJsonTest, NamesThatNeedEscapesComeBack) {
   EXPECT_EQ(json_of(diagnosis)["notes"][0], diagnosis.notes[0]);
 }
 
+TEST(DiagnosisJsonTest, AVerdictSaysHowOftenItsBlocksGiveTheName) {
+  diagnosis::Diagnosis diagnosis = diagnosis_with({diagnosis::made::every_effect().front()});
+  EXPECT_TRUE(json_of(diagnosis)["drawn_names"].is_null());
+  diagnosis.drawn_names = {100, {{"hysteresis", 83}, {"dead_zone", 17}}};
+  EXPECT_EQ(json_of(diagnosis)["drawn_names"],
+            json::parse(R"({"hysteresis":0.83,"dead_zone":0.17})"));
+  EXPECT_THAT(diagnosis_table(diagnosis),
+              HasSubstr("draws         Of 100 draws of the recording's blocks, hysteresis is named "
+                        "in 83, dead zone in 17\n"));
+}
+
 TEST(DiagnosisJsonTest, ASharePerVerdictIsGivenWhereItWasAskedFor) {
   diagnosis::Diagnosis diagnosis = diagnosis_with({});
   EXPECT_TRUE(json_of(diagnosis)["stability"].is_null());

@@ -279,7 +279,6 @@ TEST(FreeFormTest, AForceWithMemoryIsNoCurve) {
   std::vector<double> late(z.size());
   std::copy(z.begin(), z.end() - 10, late.begin() + 10);
   EXPECT_FALSE(effect_kind("free_form").drawn_after(z, late, std::vector<double>(z.size(), 1.0)));
-  EXPECT_FALSE(effect_kind("delay").drawn_after(z, z, std::vector<double>(z.size(), 1.0)));
 }
 
 // A limit on one side: straight up to 0, level above.

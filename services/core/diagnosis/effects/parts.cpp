@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/diagnosis/record/digits.hpp"
 
@@ -17,17 +18,8 @@ std::vector<Proposal> best_of(std::vector<Proposal> proposals, std::size_t count
 
 std::vector<double> response_of(const Screening& screening, std::span<const double> numerator,
                                 const std::vector<double>& input) {
-  const auto& stretches = screening.signals().stretches();
-  std::vector<double> x = through_poles(input, screening.model().body.denominator, stretches);
-  std::vector<double> y(x.size(), 0.0);
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
-      for (std::size_t i = 0; i < numerator.size() && i <= n - stretch.first; ++i) {
-        y[n] += numerator[i] * x[n - i];
-      }
-    }
-  }
-  return y;
+  return through_path(input, numerator, screening.model().body.denominator,
+                      screening.signals().stretches());
 }
 
 std::vector<double> response_of(const Screening& screening, const std::vector<double>& input) {

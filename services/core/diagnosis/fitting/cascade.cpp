@@ -33,29 +33,9 @@ struct Cascade {
   double error = HUGE_VAL;  // sum of squares over the output's variance
 };
 
-Polynomial with_poles(const std::vector<std::complex<double>>& poles) {
-  std::vector<std::complex<double>> all{1.0};
-  for (const std::complex<double>& pole : poles) {
-    all.emplace_back(0.0);
-    for (std::size_t i = all.size(); i-- > 1;) all[i] -= pole * all[i - 1];
-  }
-  Polynomial result(all.size());
-  std::ranges::transform(all, result.begin(), [](const auto& c) { return c.real(); });
-  return result;
-}
-
 std::vector<double> through(const std::vector<double>& x, const Path& path,
                             const std::vector<Stretch>& stretches) {
-  const std::vector<double> filtered = through_poles(x, path.denominator, stretches);
-  std::vector<double> y(x.size());
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
-      for (std::size_t i = 0; i < path.numerator.size() && i <= n - stretch.first; ++i) {
-        y[n] += path.numerator[i] * filtered[n - i];
-      }
-    }
-  }
-  return y;
+  return through_path(x, path.numerator, path.denominator, stretches);
 }
 
 struct CascadeRun {
@@ -300,9 +280,9 @@ std::optional<Model> cascade(const Model& model, const EffectKind& drawer, const
   for (std::size_t split = 1; split < all.size(); ++split) {
     const std::array<Poles, 2> poles = shared_out(all, split);
     for (const bool slow_first : {false, true}) {
-      auto start =
-          started(bounded(with_poles(poles[slow_first ? 1 : 0]), model.body),
-                  bounded(with_poles(poles[slow_first ? 0 : 1]), model.body), drawer, signals);
+      auto start = started(bounded(denominator_with(poles[slow_first ? 1 : 0]), model.body),
+                           bounded(denominator_with(poles[slow_first ? 0 : 1]), model.body), drawer,
+                           signals);
       if (!start) continue;
       Cascade tried = fitted(model.body, *start, signals, kFirst);
       if (tried.error < best.error) best = std::move(tried);

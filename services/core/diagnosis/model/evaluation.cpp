@@ -341,6 +341,21 @@ std::vector<double> through_poles(const std::vector<double>& x,
   return y;
 }
 
+std::vector<double> through_path(const std::vector<double>& x, std::span<const double> numerator,
+                                 const std::vector<double>& denominator,
+                                 const std::vector<Stretch>& stretches) {
+  const std::vector<double> filtered = through_poles(x, denominator, stretches);
+  std::vector<double> y(x.size(), 0.0);
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      for (std::size_t i = 0; i < numerator.size() && i <= n - stretch.first; ++i) {
+        y[n] += numerator[i] * filtered[n - i];
+      }
+    }
+  }
+  return y;
+}
+
 std::vector<double> differenced(const std::vector<double>& x,
                                 const std::vector<Stretch>& stretches) {
   std::vector<double> result(x.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <span>
 #include <vector>
 
 #include "services/core/diagnosis/model/model.hpp"
@@ -81,6 +82,10 @@ class InitialStates {
 std::vector<double> through_poles(const std::vector<double>& x,
                                   const std::vector<double>& denominator,
                                   const std::vector<Stretch>& stretches);
+/// B(q) x / A(q), every stretch from rest.
+std::vector<double> through_path(const std::vector<double>& x, std::span<const double> numerator,
+                                 const std::vector<double>& denominator,
+                                 const std::vector<Stretch>& stretches);
 /// x(n) - x(n-1), every stretch from rest.
 std::vector<double> differenced(const std::vector<double>& x,
                                 const std::vector<Stretch>& stretches);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 
+#include "services/core/diagnosis/model/modes.hpp"
 #include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
@@ -102,17 +103,15 @@ std::vector<Eigen::VectorXd> radii_on_bound(const Model& model) {
 }
 
 void stabilise(Body& body) {
-  std::vector<std::complex<double>> polynomial{1.0};
-  for (std::complex<double> pole : signal::poles({1.0, body.denominator, body.denominator})) {
+  std::vector<std::complex<double>> poles =
+      signal::poles({1.0, body.denominator, body.denominator});
+  for (std::complex<double>& pole : poles) {
     if (std::abs(pole) > 1.0) pole = 1.0 / std::conj(pole);
     // A hair inside, so that rounding doesn't put it out again.
     const double bound = bound_on(pole, body) - 1e-6;
     if (std::abs(pole) > bound) pole *= bound / std::abs(pole);
-    polynomial.emplace_back(0.0);
-    for (std::size_t i = polynomial.size(); i-- > 1;) polynomial[i] -= pole * polynomial[i - 1];
   }
-  std::ranges::transform(polynomial, body.denominator.begin(),
-                         [](const auto& c) { return c.real(); });
+  body.denominator = denominator_with(poles);
 }
 
 Eigen::VectorXd packed(const Model& model) {

@@ -2,6 +2,7 @@
 #include "services/core/diagnosis/model/modes.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -28,6 +29,17 @@ std::vector<double> mode_denominator(double frequency_hz, double damping_ratio, 
   const double radius = std::exp(-damping_ratio * w);
   const double turn = w * std::sqrt(std::max(1.0 - damping_ratio * damping_ratio, 0.0));
   return {1.0, -2.0 * radius * std::cos(turn), radius * radius};
+}
+
+std::vector<double> denominator_with(const std::vector<std::complex<double>>& poles) {
+  std::vector<std::complex<double>> all{1.0};
+  for (const std::complex<double>& pole : poles) {
+    all.emplace_back(0.0);
+    for (std::size_t i = all.size(); i-- > 1;) all[i] -= pole * all[i - 1];
+  }
+  std::vector<double> result(all.size());
+  std::ranges::transform(all, result.begin(), [](const auto& c) { return c.real(); });
+  return result;
 }
 
 std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b) {
