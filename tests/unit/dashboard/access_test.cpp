@@ -10,8 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/folder.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::access_test {
 
 const std::string kToken = "0123456789abcdef-ABC_x.y";
 
@@ -148,5 +147,4 @@ TEST_F(TokenFileTest, WhatIsNoSecretIsRefused) {
   EXPECT_THROW(read_token(file_), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::access_test

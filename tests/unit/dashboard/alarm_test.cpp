@@ -7,8 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::alarm_test {
 
 class AlarmTest : public ::testing::Test {
  protected:
@@ -126,5 +125,4 @@ TEST(AlarmInvariantTest, EqualThresholdsHaveNoWarning) {
   EXPECT_EQ(sut.level(), Level::kCritical);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::alarm_test

@@ -6,8 +6,7 @@
 
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::bus_health_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kSecond = 1000 * kMs;
@@ -151,5 +150,4 @@ TEST(BusHealthConfigTest, AWarningAboveItsCriticalValueIsRefused) {
                              "critical value"));
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::bus_health_test

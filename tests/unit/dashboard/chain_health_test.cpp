@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::chain_health_test {
 
 constexpr std::int64_t kUs = 1000;
 
@@ -53,5 +52,4 @@ TEST(ChainHealthTest, TheWorstIsOfTheTimeSinceItWasAsked) {
   EXPECT_EQ(sut.take_worst_ns(), 0);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::chain_health_test

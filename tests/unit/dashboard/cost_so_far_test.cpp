@@ -10,8 +10,7 @@
 
 #include "tests/support/stalled_session.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::cost_so_far_test {
 
 using tests::Faults;
 using tests::StalledSession;
@@ -146,5 +145,4 @@ TEST(CostSoFarTest, ATrialThatIsStoppedPaysNoMore) {
   EXPECT_EQ(heard.sut.cost()->sums.ticks, 10'000.0 - 1 - tests::kStalledStart);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::cost_so_far_test

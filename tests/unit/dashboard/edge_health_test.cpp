@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::edge_health_test {
 
 EndCounts counts(std::uint64_t samples, std::uint64_t cycle_misses, std::uint64_t lost_ticks) {
   EndCounts counts;
@@ -54,5 +53,4 @@ TEST(EdgeHealthTest, AnotherProcessOfThatNameBeginsAnew) {
   EXPECT_EQ(sut.counts().cycle_misses, 1u);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::edge_health_test

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::force_record_test {
 
 void both(ForceRecord& record, Tick tick, double measured_n, double predicted_n) {
   record.measured(tick, measured_n);
@@ -92,5 +91,4 @@ TEST(ForceRecordTest, WithoutATickOfBothTopicsItIsEmpty) {
   EXPECT_TRUE(sut.newest().force_n.empty());
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::force_record_test

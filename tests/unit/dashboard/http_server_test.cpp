@@ -14,8 +14,7 @@
 
 #include "tests/support/folder.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::http_server_test {
 
 using boost::asio::ip::tcp;
 using boost::system::error_code;
@@ -144,5 +143,4 @@ TEST_F(HttpServerTest, AConnectionThatWasSignedInOutlivesStrangers) {
   EXPECT_EQ(stops_, 1);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::http_server_test

@@ -7,8 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::log_histogram_test {
 
 std::int64_t exact(std::vector<std::int64_t> values, double share) {
   std::ranges::sort(values);
@@ -63,5 +62,4 @@ TEST(LogHistogramTest, CountsUpToAnEdgeAddUpToAll) {
   EXPECT_EQ(sut.count_up_to(LogHistogram::kMost_ns), 4u);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::log_histogram_test

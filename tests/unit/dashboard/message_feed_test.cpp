@@ -10,8 +10,7 @@
 #include "idl/control_loop.h"
 #include "tests/support/session_file.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::message_feed_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kBegin = 1000 * 1000 * kMs;
@@ -334,5 +333,4 @@ TEST_F(MessageFeedTest, BytesThatAreNoMessageAreCountedAndHarmNothing) {
   EXPECT_TRUE(nlohmann::json::accept(snapshot_json(sut_, {}, kBegin, -1)));
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::message_feed_test

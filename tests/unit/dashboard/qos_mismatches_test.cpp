@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::qos_mismatches_test {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -38,5 +37,4 @@ TEST(QosMismatchesTest, HoldsABoundedNumberOfThem) {
   EXPECT_EQ(sut.all().back().topic, "topic999");
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::qos_mismatches_test

@@ -17,8 +17,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/session_file.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::recorded_run_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kBegin = 1'700'000'000'000 * kMs;
@@ -205,5 +204,4 @@ TEST_F(RecordedRunTest, WhatIsNoRecordingIsRefused) {
   EXPECT_THROW(RecordedRun(file_, FeedOptions{}, {}), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::recorded_run_test

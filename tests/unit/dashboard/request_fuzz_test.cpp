@@ -17,8 +17,7 @@
 // Requests that are right, spoilt by a seeded generator: each has an answer that this page may
 // give, none without the token, and no file but the page's own is in any.
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::request_fuzz_test {
 
 using Random = std::mt19937;
 
@@ -207,5 +206,4 @@ TEST_F(RequestFuzzTest, ATokenFileIsATokenOrRefusedInOneLine) {
   EXPECT_GT(refused, 200);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::request_fuzz_test

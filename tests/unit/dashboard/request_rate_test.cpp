@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::request_rate_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr auto kMost = static_cast<int>(RequestRate::kMostPerSecond);
@@ -25,5 +24,4 @@ TEST(RequestRateTest, InNoSecondGoMoreThanSoManyOn) {
   EXPECT_TRUE(burst.take(1001 * kMs));
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::request_rate_test

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::residual_spectrum_test {
 
 double sine(double amplitude, double frequency_hz, Tick tick) {
   return amplitude *
@@ -47,5 +46,4 @@ TEST(ResidualSpectrumTest, IsEmptyBeforeASegmentIsThere) {
   EXPECT_EQ(residual_spectrum(ForceRecord{}).segments, 0u);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::residual_spectrum_test

@@ -7,8 +7,7 @@
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::rigs_test {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 
@@ -71,5 +70,4 @@ TEST_F(RigsTest, WhoBringsMoreRigsThanThereMayBeIsNotCounted) {
   EXPECT_EQ(sut_.shown().newest_tick(), -1);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::rigs_test

@@ -10,8 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/folder.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::routes_test {
 
 const std::string kToken = "0123456789abcdef";
 
@@ -188,5 +187,4 @@ TEST_F(RoutesTest, AFolderWithoutAFileOfThePageIsRefused) {
   EXPECT_THROW(Pages{folder_}, ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::routes_test

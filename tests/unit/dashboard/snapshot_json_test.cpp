@@ -12,8 +12,7 @@
 #include "apps/dashboard/view/view_json.hpp"
 #include "tests/support/session_file.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::snapshot_json_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kBegin = 1000 * 1000 * kMs;
@@ -250,5 +249,4 @@ TEST(TimelineJsonTest, NeverIsNullAndEveryOtherInstantIsMilliseconds) {
   EXPECT_EQ(number(-0.5), -0.5);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::snapshot_json_test

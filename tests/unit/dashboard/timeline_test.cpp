@@ -9,8 +9,7 @@
 #include <random>
 #include <tuple>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::timeline_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kBegin = 1'000'000 * kMs;
@@ -166,5 +165,4 @@ TEST_F(TimelineTest, ATrialWhoseFirstTicksAreLostBeginsWithTheFirstThatCame) {
   EXPECT_EQ(sut_.trials()[0].to_ns, kBegin + 9000 * kMs);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::timeline_test

@@ -8,8 +8,7 @@
 #include <cstdint>
 #include <random>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::topic_health_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kSecond = 1000 * kMs;
@@ -226,5 +225,4 @@ TEST(TopicHealthTest, ExtremeTimesAndTicksNeitherOverflowNorGiveNegativeLateness
   }
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::topic_health_test

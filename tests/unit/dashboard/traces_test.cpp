@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::traces_test {
 
 TEST(TracesTest, EveryTwentiethTickOfTheNewestTenSecondsIsKept) {
   Traces sut;
@@ -86,5 +85,4 @@ TEST(TracesTest, NegativeTicksAndTicksBetweenTheRowsAreIgnored) {
   EXPECT_EQ(sut.rows().front().tick, 200);
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::traces_test

@@ -5,8 +5,7 @@
 
 #include "tests/support/session_file.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::view_json_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -101,5 +100,4 @@ TEST(SpectrumJsonTest, IsNullWithoutASegmentAndFiniteNumbersWithOne) {
   for (const Json& value : spectrum.at("residual_n2_hz")) EXPECT_TRUE(value.is_number());
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::view_json_test

@@ -8,8 +8,7 @@
 
 #include "idl/topics.hpp"
 
-namespace stillhand::dashboard {
-namespace {
+namespace stillhand::dashboard::words_test {
 
 TEST(WordsTest, EveryKindOfEventHasANameOfItsOwn) {
   std::set<std::string> names;
@@ -69,5 +68,4 @@ TEST(WordsTest, ATopicWithOneWriterNamesItAndOthersNameNone) {
   EXPECT_EQ(writer_of(""), "");
 }
 
-}  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand::dashboard::words_test

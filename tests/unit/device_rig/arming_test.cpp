@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::arming_test {
 
 /// A drive that does what it is asked, one tick later.
 class ArmingTest : public testing::Test {
@@ -148,5 +147,4 @@ TEST_F(ArmingTest, AFaultThatStaysIsNotArmedInAnotherTrial) {
   for (int i = 0; i < 200; ++i) EXPECT_EQ(step().order, Order::kStop);
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::arming_test

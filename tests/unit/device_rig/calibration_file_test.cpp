@@ -10,8 +10,7 @@
 #include "services/files/settings/yaml_text.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::calibration_file_test {
 
 using testing::HasSubstr;
 
@@ -107,5 +106,4 @@ TEST_F(CalibrationFileTest, TheFileKeepsEveryBit) {
   EXPECT_EQ(again.force.date, "");
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::calibration_file_test

@@ -10,8 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::calibration_fit_test {
 
 using testing::AllOf;
 using testing::ContainsRegex;
@@ -92,5 +91,4 @@ TEST(CalibrationFitTest, RefusesStepsThatDetermineNoLine) {
   for (const auto& each : bad) EXPECT_THROW(calibration_fit(each), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::calibration_fit_test

@@ -13,8 +13,7 @@
 
 #include "services/core/device_rig/moteus_drive.hpp"
 
-namespace stillhand::device_rig::moteus {
-namespace {
+namespace stillhand::device_rig::moteus::can_record_test {
 
 Frame frame_of(const std::vector<std::uint8_t>& bytes) {
   Frame frame;
@@ -112,5 +111,4 @@ TEST(CanRecordTest, WhatIsNoFrameOfTheBusIsNone) {
   EXPECT_TRUE(read_record({reinterpret_cast<const char*>(&classic), sizeof(classic)}));
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig::moteus
+}  // namespace stillhand::device_rig::moteus::can_record_test

@@ -14,8 +14,7 @@
 #include "tests/unit/device_rig/emulated_drive.hpp"
 #include "tests/unit/device_rig/emulated_platform.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::device_plant_test {
 
 using support::eventually;
 
@@ -258,5 +257,4 @@ TEST_F(DevicePlantTest, AnAngleThatJumpsDisarmsForGood) {
   EXPECT_FALSE(sut.prepared());
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::device_plant_test

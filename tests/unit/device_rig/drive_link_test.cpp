@@ -15,8 +15,7 @@
 #include "tests/support/wait.hpp"
 #include "tests/unit/device_rig/emulated_drive.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::drive_link_test {
 
 using support::eventually;
 using testing::HasSubstr;
@@ -170,5 +169,4 @@ TEST_F(DriveLinkTest, DamagedTruncatedAndSenselessAnswersAreNoSamples) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::drive_link_test

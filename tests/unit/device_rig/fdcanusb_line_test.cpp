@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace stillhand::device_rig::moteus {
-namespace {
+namespace stillhand::device_rig::moteus::fdcanusb_line_test {
 
 using testing::ElementsAre;
 
@@ -82,5 +81,4 @@ TEST(LineSplitterTest, JoinsPiecesAndDropsALineWithoutAnEnd) {
   EXPECT_THAT(lines, ElementsAre("OK", "rcv 1", "OK"));
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig::moteus
+}  // namespace stillhand::device_rig::moteus::fdcanusb_line_test

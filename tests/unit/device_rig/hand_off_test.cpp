@@ -8,8 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::hand_off_test {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -60,5 +59,4 @@ TEST(HandOffTest, TheGainIsThatOfTheReadingWhateverItsZeroAndDelay) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::hand_off_test

@@ -12,8 +12,7 @@
 
 #include "tests/support/folder.hpp"
 
-namespace stillhand::emulators {
-namespace {
+namespace stillhand::emulators::iio_side_test {
 
 namespace fs = std::filesystem;
 
@@ -60,5 +59,4 @@ TEST_F(IioSideTest, ABufferKeepsWhatItsReaderAskedForAndDropsTheNewest) {
   EXPECT_EQ(sut.counts().longest_gap_ns, 51'000'000);
 }
 
-}  // namespace
-}  // namespace stillhand::emulators
+}  // namespace stillhand::emulators::iio_side_test

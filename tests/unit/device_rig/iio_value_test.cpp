@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::iio_value_test {
 
 // The example of Linux, Documentation/ABI/testing/sysfs-bus-iio: value = (raw + offset) * scale.
 TEST(IioValueTest, IsTheSumOfNumberAndOffsetTimesTheScale) {
@@ -21,5 +20,4 @@ TEST(IioValueTest, AtAnEndOfTheConverterItIsNoMeasurement) {
   EXPECT_FALSE(std::isnan(iio_value(510, 0.0, 1.0, -512, 511)));
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::iio_value_test

@@ -13,8 +13,7 @@
 #include "services/core/device_rig/fdcanusb_line.hpp"
 #include "tests/emulators/moteus_emulator.hpp"
 
-namespace stillhand::device_rig::moteus {
-namespace {
+namespace stillhand::device_rig::moteus::moteus_drive_test {
 
 constexpr std::int64_t kMs_ns = 1'000'000;
 
@@ -146,5 +145,4 @@ TEST_F(TorqueFrameTest, TheEmulatorTakesTheMakersPrintedCommand) {
   EXPECT_EQ(drive_.mode(), 10);
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig::moteus
+}  // namespace stillhand::device_rig::moteus::moteus_drive_test

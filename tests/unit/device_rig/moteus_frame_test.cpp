@@ -11,8 +11,7 @@
 #include "services/core/device_rig/moteus_drive.hpp"
 #include "tests/support/hex.hpp"
 
-namespace stillhand::device_rig::moteus {
-namespace {
+namespace stillhand::device_rig::moteus::moteus_frame_test {
 
 // The exchange that the maker prints: mjbots/moteus, docs/protocol/can.md, "Example".
 TEST(FrameWriterTest, MakesTheFrameThatTheMakerPrints) {
@@ -120,5 +119,4 @@ TEST(FrameReaderTest, AnErrorOfARegisterIsAnItem) {
   EXPECT_TRUE(read_reply(payload).refused);
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig::moteus
+}  // namespace stillhand::device_rig::moteus::moteus_frame_test

@@ -6,8 +6,7 @@
 
 #include <string>
 
-namespace stillhand::device_rig::moteus {
-namespace {
+namespace stillhand::device_rig::moteus::moteus_settings_test {
 
 constexpr SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
 
@@ -67,5 +66,4 @@ TEST(ConsoleAnswerTest, IsALineFromPieces) {
   EXPECT_EQ(sut.line(), "0.100");
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig::moteus
+}  // namespace stillhand::device_rig::moteus::moteus_settings_test

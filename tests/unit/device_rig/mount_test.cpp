@@ -12,8 +12,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::mount_test {
 
 using Vector = std::array<double, 3>;
 
@@ -53,5 +52,4 @@ TEST(MountTest, AReadingThatIsNoneLeavesNoAxis) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::mount_test

@@ -10,8 +10,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::parts_test {
 
 std::string refusal(const DevicesConfig& config) {
   return support::refusal([&] { parts_of(config); });
@@ -107,5 +106,4 @@ TEST(LoadDevicesTest, AWordThatIsNoPartIsRefusedWithFileKeyAndTheWordsThatThereA
   EXPECT_EQ(refused("signals: {force: iio}\n"), "accepted");
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::parts_test

@@ -7,8 +7,7 @@
 #include "services/core/device_rig/platform_response.hpp"
 #include "tests/unit/device_rig/platform_bench.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::platform_campaign_test {
 
 constexpr Tick kAnnounced = 300, kLead = 1000, kRamp = 1500, kMeasured = 1500, kPause = 500;
 constexpr Tick kEnd = kAnnounced + kLead + 2 * kRamp + kMeasured;
@@ -244,5 +243,4 @@ INSTANTIATE_TEST_SUITE_P(Protocols, PlatformCampaignTest,
                            return each.param == Parts::Platform::kMoog ? "Moog" : "Plain";
                          });
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::platform_campaign_test

@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::platform_drive_test {
 
 constexpr motion::PlatformLimits kGuard{.max_position_m = 0.15,
                                         .max_velocity_m_s = 1.5,
@@ -215,5 +214,4 @@ TEST_F(PlatformDriveTest, APlatformThatSomebodyMovedInASilenceIsHeldWhereItIsThe
   }
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::platform_drive_test

@@ -5,8 +5,7 @@
 
 #include "tests/emulators/platform_emulator.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::platform_exchange_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -48,5 +47,4 @@ TEST_F(PlatformExchangeTest, ACommandOfLongAgoIsForgotten) {
   EXPECT_FALSE(sut_.take(first, 1300 * kMs));
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::platform_exchange_test

@@ -12,8 +12,7 @@
 #include "tests/emulators/platform_emulator.hpp"
 #include "tests/support/hex.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::platform_protocol_test {
 
 constexpr const char* kPlainCommand =
     "534850430200010007000000cdab3412140000009a9999999999a93f000000000000d0bf000000000000f83f"
@@ -158,5 +157,4 @@ TEST(MoogPlatformTest, EngagesWhenAskedParksWhenNotAndNeverResetsAFault) {
   for (std::uint32_t fault = 8; fault < 16; ++fault) EXPECT_EQ(word(follow, fault), moog::kDisable);
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::platform_protocol_test

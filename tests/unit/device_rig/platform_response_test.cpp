@@ -14,8 +14,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::platform_response_test {
 
 using Complex = std::complex<double>;
 
@@ -159,5 +158,4 @@ TEST(PlatformTestTest, APlatformThatStandsOrIsSilentIsRefused) {
   EXPECT_THROW(PlatformTest({}, 1), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::platform_response_test

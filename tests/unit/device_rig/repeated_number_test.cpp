@@ -8,8 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::repeated_number_test {
 
 constexpr double kLeast = 0.5;  // [m/s^2]
 
@@ -52,5 +51,4 @@ TEST(RepeatedNumberTest, AMissingNumberDoesNotRepeat) {
   EXPECT_FALSE(sut.repeats());
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::repeated_number_test

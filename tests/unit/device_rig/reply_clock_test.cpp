@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::reply_clock_test {
 
 using Verdict = ReplyClock::Verdict;
 
@@ -186,5 +185,4 @@ TEST(ReplyClockTest, AfterALongSilenceNothingIsKnown) {
   EXPECT_EQ(sut.step(wrapped(40'000), 40'000.0), Verdict::kRestarted);
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::reply_clock_test

@@ -8,8 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace stillhand::device_rig {
-namespace {
+namespace stillhand::device_rig::same_side_test {
 
 /// Commanded acceleration of 0.9 and 2.3 Hz [m/s^2].
 double commanded(double tick) {
@@ -52,5 +51,4 @@ TEST(SameSideTest, WhatIsNoNumberDoesNotCount) {
   EXPECT_FALSE(sut.opposed());
 }
 
-}  // namespace
-}  // namespace stillhand::device_rig
+}  // namespace stillhand::device_rig::same_side_test

@@ -9,8 +9,7 @@
 
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::binning_test {
 
 struct Cloud {
   std::vector<double> x;
@@ -102,5 +101,4 @@ TEST(BinningTest, AConstantHasAnAxisAllTheSame) {
   EXPECT_EQ(share_between_bins(sut, x, ones, ones), 0.0);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::binning_test

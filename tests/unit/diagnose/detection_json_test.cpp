@@ -7,8 +7,7 @@
 
 #include "apps/diagnose/diagnosis_json.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::detection_json_test {
 
 diagnosis::DetectionResult made_result() {
   diagnosis::DetectionResult result;
@@ -79,5 +78,4 @@ TEST(DetectionJsonTest, ALineOfTheTableIsAsLongAsItMustBe) {
   EXPECT_TRUE(diagnosis_table(diagnosis).ends_with("xend\nnote          after it\n"));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::detection_json_test

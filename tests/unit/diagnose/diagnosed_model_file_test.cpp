@@ -8,8 +8,7 @@
 #include "services/files/diagnosis/model_file.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::diagnosed_model_file_test {
 
 using nlohmann::json;
 using testing::AllOf;
@@ -154,5 +153,4 @@ TEST(DiagnosedModelFileTest, TheLinearModelComesBackAndMayBeMissing) {
   EXPECT_THROW(static_cast<void>(parse_linear_model(file.dump(), "m.json")), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::diagnosed_model_file_test

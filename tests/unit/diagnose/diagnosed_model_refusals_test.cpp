@@ -12,8 +12,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::diagnosed_model_refusals_test {
 
 using nlohmann::json;
 using testing::AllOf;
@@ -228,5 +227,4 @@ TEST(DiagnosedModelRefusalsTest, MoreThanAModelCanHoldIsRefused) {
               HasSubstr("channels"));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::diagnosed_model_refusals_test

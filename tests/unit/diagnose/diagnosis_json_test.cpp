@@ -10,8 +10,7 @@
 
 #include "tests/unit/diagnosis/every_effect.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::diagnosis_json_test {
 
 using diagnosis::Effect;
 using nlohmann::json;
@@ -216,5 +215,4 @@ TEST(DiagnosisJsonTest, TheTableHasALineForEveryError) {
                     HasSubstr("it is there")));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::diagnosis_json_test

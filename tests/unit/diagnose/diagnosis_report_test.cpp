@@ -21,8 +21,7 @@
 #include "tests/unit/diagnose/sample_recordings.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::diagnosis_report_test {
 
 using report::test::TemporaryFolder;
 using testing::Each;
@@ -235,5 +234,4 @@ TEST_F(DiagnosisReportTest, ResidualWithoutAnEffectIsWhatItTakesAndWhatIsLeft) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::diagnosis_report_test

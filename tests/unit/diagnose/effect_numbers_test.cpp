@@ -12,8 +12,7 @@
 #include "services/core/diagnosis/model/modes.hpp"
 #include "tests/unit/diagnose/sample_recordings.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::effect_numbers_test {
 
 using diagnosis::Body;
 using diagnosis::constant;
@@ -175,5 +174,4 @@ TEST(EffectNumbersTest, AStaticBodyIsAFactorWithItsError) {
   EXPECT_GT(sut[1].standard_error, 0.0);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::effect_numbers_test

@@ -7,8 +7,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::enough_test {
 
 namespace made = diagnosis::made;
 
@@ -58,5 +57,4 @@ TEST(EnoughTest, ARefusalSaysWhatWouldBeEnough) {
   check_enough(two, options());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::enough_test

@@ -11,8 +11,7 @@
 #include "apps/diagnose/page/figures.hpp"
 #include "tests/unit/diagnose/sample_recordings.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::figures_effect_test {
 
 using diagnosis::Body;
 using diagnosis::Effect;
@@ -232,5 +231,4 @@ TEST(FigureEffectTest, ABurstPredictsNothingOfWhatCounts) {
   EXPECT_EQ(sut.panels.size(), 1U);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::figures_effect_test

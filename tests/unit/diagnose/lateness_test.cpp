@@ -15,8 +15,7 @@
 #include "tests/support/session_file.hpp"
 #include "tests/support/stalled_session.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::lateness_test {
 
 using testing::HasSubstr;
 
@@ -92,5 +91,4 @@ TEST_F(LatenessTest, ATrialWithoutCancellationOrBlindedHasNone) {
   EXPECT_TRUE(splits().empty());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::lateness_test

@@ -11,8 +11,7 @@
 #include "apps/diagnose/page/figures.hpp"
 #include "tests/unit/diagnose/sample_recordings.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::law_test {
 
 using diagnosis::Body;
 using diagnosis::Effect;
@@ -125,5 +124,4 @@ TEST(LawTest, ADelayAndAGainNeedNoPanelMore) {
           .sut.panels.empty());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::law_test

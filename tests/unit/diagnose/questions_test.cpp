@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::questions_test {
 
 using testing::ElementsAre;
 
@@ -62,5 +61,4 @@ TEST(QuestionsTest, EqualSharesKeepTheirOrder) {
   EXPECT_TRUE(strongest_answers({}, 4).empty());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::questions_test

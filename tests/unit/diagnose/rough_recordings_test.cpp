@@ -13,8 +13,7 @@
 #include "services/core/signal/random.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::rough_recordings_test {
 
 constexpr std::size_t kCount = 6000;
 constexpr double kPeriod_s = 0.01;
@@ -103,5 +102,4 @@ TEST(RoughRecordingsTest, AForceThatStandsStillForTwoSecondsCostsNoVerdict) {
   EXPECT_EQ(sut.verdict(), kPlanted);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::rough_recordings_test

@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::wording_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -179,5 +178,4 @@ TEST(WordingTest, WithoutEffectsTheVerdictGivesTheBaselinesError) {
   EXPECT_NE(nothing, unexplained);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::wording_test

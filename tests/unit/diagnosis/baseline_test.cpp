@@ -10,8 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::baseline_test {
 
 constexpr std::size_t kCount = 12000;
 
@@ -152,5 +151,4 @@ TEST(BaselineTest, AnOrderThatIsNoneOrARecordTooShortIsRefused) {
   EXPECT_THROW(fit_baseline(few, {5, 10, 5}, 12), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::baseline_test

@@ -12,8 +12,7 @@
 #include "services/core/diagnosis/fitting/fit.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::body_order_test {
 
 constexpr std::size_t kCount = 6000;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -68,5 +67,4 @@ TEST(OrderInsteadTest, WithoutABendALongResponseSaysThatModesAreMissing) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::body_order_test

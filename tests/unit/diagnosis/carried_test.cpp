@@ -11,8 +11,7 @@
 #include "services/core/diagnosis/apart_from_time.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::carried_test {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -214,5 +213,4 @@ TEST(CarriedTest, BurstsAreLeftOutOfTheFitAndOfNothingElse) {
   EXPECT_GT(std::abs(sut.studied.baseline.model.body.numerators[0][0] - 2.0), 0.05);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::carried_test

@@ -12,8 +12,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::cascade_test {
 
 constexpr std::size_t kCount = 6000;
 
@@ -80,5 +79,4 @@ TEST(CascadeTest, ALawThatHasTheShapeKeepsItsName) {
   EXPECT_LT(found.final_error.rmse, 0.02);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::cascade_test

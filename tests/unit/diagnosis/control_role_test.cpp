@@ -7,8 +7,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::control_role_test {
 
 using namespace control;
 
@@ -23,7 +22,7 @@ struct Role {
   std::size_t drive;
 };
 
-const std::size_t kNone = index_of(LeftOut{});
+const std::size_t kNone = index_of(control::LeftOut{});
 
 // One effect of each kind, and of every form that acts at another stage.
 std::vector<Role> every_role() {
@@ -85,7 +84,7 @@ TEST(ControlRoleTest, AKindStatesWhatTheCancellerDoesAboutIt) {
     EXPECT_EQ(body.index(), each.body);
     EXPECT_EQ(drive.index(), each.drive);
     for (const ControlRole& role : {body, drive}) {
-      if (const auto* left_out = std::get_if<LeftOut>(&role)) {
+      if (const auto* left_out = std::get_if<control::LeftOut>(&role)) {
         EXPECT_FALSE(left_out->reason.empty());
       }
     }
@@ -147,5 +146,4 @@ TEST(ControlRoleTest, APowerOfAUnitIsWrittenAsInAHeader) {
   EXPECT_EQ(unit_power("", 2), "-");
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::control_role_test

@@ -9,8 +9,7 @@
 
 #include "tests/unit/diagnosis/made_multisine.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::detection_lines_test {
 
 constexpr std::size_t kPeriod = 1000;
 const std::vector<std::size_t> kOdd{1, 5, 7, 11, 15, 17, 21, 25};  // 3, 9, 13, 19, 23 left out
@@ -155,5 +154,4 @@ TEST(DetectionLinesTest, StepsOfAConverterAreNoEffect) {
   EXPECT_EQ(sut.even.p, 1.0);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::detection_lines_test

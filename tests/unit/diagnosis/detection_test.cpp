@@ -9,8 +9,7 @@
 
 #include "tests/unit/diagnosis/made_multisine.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::detection_test {
 
 constexpr std::size_t kCount = 6000;
 constexpr double kNoise = 0.05;
@@ -199,5 +198,4 @@ TEST(DetectionTest, SpreadTellsWhereTheResidualIsLarge) {
               0.1);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::detection_test

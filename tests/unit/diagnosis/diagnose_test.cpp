@@ -13,8 +13,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::diagnose_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -377,5 +376,4 @@ TEST(DiagnoseTest, ASignalThatWasMadeIsTold) {
   EXPECT_THAT(sut.notes, Contains(HasSubstr("'rate of theta' was made from theta")));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::diagnose_test

@@ -4,8 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::drawn_names_test {
 
 using testing::ElementsAre;
 using testing::Pair;
@@ -78,5 +77,4 @@ TEST(DrawnNamesTest, WhatIsNotWorthAddingIsNothing) {
 
 TEST(DrawnNamesTest, WithoutARoundThereIsNone) { EXPECT_FALSE(drawn_names({}, {})); }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::drawn_names_test

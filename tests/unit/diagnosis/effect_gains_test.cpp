@@ -9,8 +9,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effect_gains_test {
 
 constexpr std::size_t kCount = 801;  // 8 s from the first to the last sample
 constexpr double kPi = std::numbers::pi;
@@ -179,5 +178,4 @@ TEST(EffectGainsTest, AGainKindLeavesTheWeightsAndAWeightKindTheGain) {
   EXPECT_EQ(weight, ones);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effect_gains_test

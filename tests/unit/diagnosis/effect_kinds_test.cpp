@@ -8,8 +8,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effect_kinds_test {
 
 using testing::IsSupersetOf;
 
@@ -123,5 +122,4 @@ TEST(EffectKindsTest, SomeKindsComeOnceAlone) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effect_kinds_test

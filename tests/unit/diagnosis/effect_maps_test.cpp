@@ -10,8 +10,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effect_maps_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -210,5 +209,4 @@ TEST(EffectMapsTest, AKindThatActsElsewhereLeavesTheValuesAlone) {
   EXPECT_EQ(none.threshold, 1.0);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effect_maps_test

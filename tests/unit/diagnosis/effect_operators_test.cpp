@@ -11,8 +11,7 @@
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effect_operators_test {
 
 using testing::ElementsAre;
 
@@ -95,5 +94,4 @@ TEST(EffectPartsTest, ANumberHasThreeDigitsAndItsUnit) {
   EXPECT_EQ(with_unit(1234567.0, "m"), "1.23e+06 m");
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effect_operators_test

@@ -11,8 +11,7 @@
 
 #include "tests/unit/diagnosis/every_effect.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effect_sizes_test {
 
 constexpr std::size_t kSamples = 2000;
 
@@ -216,5 +215,4 @@ TEST(EffectSizesTest, ARatioOfUnitsIsWrittenAsAHeaderHasIt) {
   EXPECT_EQ(unit_over("-", "s"), "1/s");
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effect_sizes_test

@@ -11,8 +11,7 @@
 #include "services/core/diagnosis/model/modes.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effect_terms_test {
 
 using testing::DoubleNear;
 using testing::ElementsAre;
@@ -304,5 +303,4 @@ TEST(EffectTermsTest, ASharpSignHasAShareOfBothWhereItCrosses) {
   for (std::size_t n = 201; n < kCount; ++n) ASSERT_EQ(sut[n], 0.0) << n;
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effect_terms_test

@@ -7,8 +7,7 @@
 #include "tests/unit/diagnosis/proposed.hpp"
 
 // Effects that hang on a channel besides the input.  Each on a recording of its own.
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effects_of_channels_test {
 
 using made::expect_proposed;
 using made::Planted;
@@ -243,5 +242,4 @@ TEST(EffectsOfChannelsTest, HysteresisOfAPosition) {
   expect_proposed(smooth);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effects_of_channels_test

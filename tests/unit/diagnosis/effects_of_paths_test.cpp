@@ -7,8 +7,7 @@
 #include "tests/unit/diagnosis/proposed.hpp"
 
 // Effects between input and output: time, maps, modes.  Each on a recording of its own.
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effects_of_paths_test {
 
 using made::expect_proposed;
 using made::Planted;
@@ -200,5 +199,4 @@ TEST(EffectsOfPathsTest, AnOutputThatHardens) {
   expect_proposed(sut);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effects_of_paths_test

@@ -6,8 +6,7 @@
 #include "tests/unit/diagnosis/proposed.hpp"
 
 // Nonlinearities inside the body, Eq. DG-4, simulated here sample by sample.
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effects_of_springs_test {
 
 using made::expect_proposed;
 using made::Planted;
@@ -123,5 +122,4 @@ TEST(EffectsOfSpringsTest, ASpringInsideTheBody) {
   expect_proposed(sut);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effects_of_springs_test

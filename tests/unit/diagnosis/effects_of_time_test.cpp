@@ -8,8 +8,7 @@
 #include "tests/unit/diagnosis/proposed.hpp"
 
 // Effects of time alone.  Each on a recording of its own.
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::effects_of_time_test {
 
 using made::expect_proposed;
 using made::Planted;
@@ -154,5 +153,4 @@ TEST(EffectsOfTimeTest, NoiseIsNoBurst) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::effects_of_time_test

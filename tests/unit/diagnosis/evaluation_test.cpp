@@ -9,8 +9,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::evaluation_test {
 
 using testing::DoubleNear;
 using testing::Each;
@@ -204,5 +203,4 @@ TEST(EvaluationTest, WhatIsNotTheBodysIsTakenOffTheOutput) {
   EXPECT_FALSE(without_effects(model, signals, inputs, output));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::evaluation_test

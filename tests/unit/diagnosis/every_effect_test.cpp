@@ -12,8 +12,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::every_effect_test {
 
 constexpr std::size_t kCount = 800;
 
@@ -173,5 +172,4 @@ TEST(EveryEffectTest, EvidenceGivesTheNumberInItsUnit) {
   EXPECT_NE(says(friction).find("0.4 (output unit) against"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::every_effect_test

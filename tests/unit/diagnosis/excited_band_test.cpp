@@ -8,8 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::excited_band_test {
 
 constexpr double kRate_hz = 100.0;
 constexpr std::size_t kCount = 4096;  // whole periods of every line below: no leakage
@@ -46,5 +45,4 @@ TEST(ExcitedBandTest, AConstantHasNoPower) {
   EXPECT_EQ(power_outside(sut, std::vector<double>(kCount, 7.0), 7.0, kRate_hz), 0.0);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::excited_band_test

@@ -11,8 +11,7 @@
 #include "services/core/diagnosis/fitting/held_out.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::fit_test {
 
 constexpr std::size_t kCount = 3000;
 
@@ -380,5 +379,4 @@ TEST(FitTest, NextToAPoleOnItsBoundTheOtherNumbersMove) {
   EXPECT_EQ(radii_on_bound(sut).size(), 1U);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::fit_test

@@ -8,8 +8,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::fourier_lines_test {
 
 TEST(FourierLinesTest, AnyLengthGivesTheDefinitionsSums) {
   for (const std::size_t count : {1u, 2u, 3u, 8u, 30u, 101u, 1009u}) {
@@ -30,5 +29,4 @@ TEST(FourierLinesTest, AnyLengthGivesTheDefinitionsSums) {
 
 TEST(FourierLinesTest, NothingHasNoLines) { EXPECT_TRUE(fourier_lines({}).empty()); }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::fourier_lines_test

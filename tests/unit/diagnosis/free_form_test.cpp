@@ -13,8 +13,7 @@
 #include "services/core/diagnosis/diagnose.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::free_form_test {
 
 constexpr std::size_t kCount = 6000;
 
@@ -294,5 +293,4 @@ TEST(FreeFormTest, TheEvidenceOfACurveInsideIsItsSlopes) {
             "high end 0 % of its steepest slope");
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::free_form_test

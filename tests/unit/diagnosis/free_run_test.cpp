@@ -11,8 +11,7 @@
 // The free run against difference equations that are written out here, stage by stage of the model
 // (services/core/diagnosis/RESULTS.md); two stretches, so that nothing leaks from one into the
 // other.
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::free_run_test {
 
 using testing::DoubleNear;
 using testing::ElementsAre;
@@ -349,5 +348,4 @@ TEST(FreeRunTest, ABodyThatIsUnstableOrALoopThatRunsAwayIsToldSo) {
                    .finite);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::free_run_test

@@ -7,8 +7,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::impulse_response_test {
 
 constexpr std::size_t kCount = 12000;
 
@@ -88,5 +87,4 @@ TEST(ImpulseResponseTest, WithoutALongStretchThereIsNoFiniteResponse) {
   EXPECT_TRUE(std::isnan(sut.rmse));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::impulse_response_test

@@ -10,8 +10,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::interpolation_test {
 
 using testing::ElementsAre;
 
@@ -150,5 +149,4 @@ TEST(InterpolationTest, TheEdgesOfAStretchAreHeldAndNothingLeaksOver) {
               ElementsAre(1.0, 1.0, 1.0, 1.0, 50.0, 50.0, 50.0, 50.0));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::interpolation_test

@@ -9,8 +9,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::line_search_test {
 
 constexpr std::size_t kCount = 6000;
 
@@ -123,5 +122,4 @@ TEST(LineSearchTest, WithoutARangeOrABandThereAreNoLines) {
   EXPECT_TRUE(strongest_lines(clock(), made::white(kCount, 1), 5.0, 5.01, 3).empty());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::line_search_test

@@ -8,8 +8,7 @@
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 // linearised() against central differences of free_run(), with every kind of stage in the model.
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::linearisation_test {
 
 constexpr std::size_t kCount = 600;
 
@@ -213,5 +212,4 @@ TEST(LinearisationTest, TheResidualIsWeightedOutputLessPrediction) {
   EXPECT_EQ(residual_of(model, signals, run), sut.residual);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::linearisation_test

@@ -7,8 +7,7 @@
 #include "services/core/diagnosis/model/model_run.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::loop_test {
 
 constexpr std::size_t kCount = 3000;
 
@@ -115,5 +114,4 @@ TEST(LoopTest, AnEffectFitsABodyOfAnotherOrder) {
   EXPECT_EQ(at_order(term, 2, 1).coefficients, term.coefficients);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::loop_test

@@ -9,8 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::measurement_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -109,5 +108,4 @@ TEST(MeasurementTest, AStretchBeginsAfterTheOneBefore) {
   EXPECT_EQ(error_of(sut), "accepted");
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::measurement_test

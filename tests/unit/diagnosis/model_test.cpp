@@ -13,8 +13,7 @@
 #include "services/core/signal/random.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::model_test {
 
 using testing::DoubleNear;
 using testing::ElementsAre;
@@ -267,5 +266,4 @@ TEST(ModelTest, ThePolesOnTheirBoundSayHowTheyLeaveIt) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::model_test

@@ -8,8 +8,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::modes_test {
 
 constexpr std::size_t kCount = 2000;
 
@@ -83,5 +82,4 @@ TEST(ModesTest, WithoutAModeToTakeOutNothingIsSplit) {
       split_modes(with_poles({1.0, -1.2, 0.47, -0.06}, {1.0, 0.0, 0.0, 0.0}), 100.0).empty());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::modes_test

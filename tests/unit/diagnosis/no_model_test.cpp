@@ -13,8 +13,7 @@
 #include "services/core/diagnosis/share_words.hpp"
 #include "tests/support/spoiled_recordings.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::no_model_test {
 
 Measurement measured(const spoiled::Case& each) {
   const recording::Recording rows = spoiled::recorded(each);
@@ -195,5 +194,4 @@ TEST(NoModelTest, TheLagAndTheDriftAreThoseOfTheClock) {
   EXPECT_TRUE(readings(sut("as it is")).empty());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::no_model_test

@@ -8,8 +8,7 @@
 
 #include "tests/unit/diagnosis/made_multisine.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::noise_floor_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -174,5 +173,4 @@ TEST(NoiseFloorTest, HighFrequenciesAreTakenForTheBandAsWell) {
   EXPECT_THAT(sut.method, HasSubstr("1000 times"));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::noise_floor_test

@@ -9,8 +9,7 @@
 #include "tests/planted/to_measurement.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::noise_model_test {
 
 using made::white;
 using testing::IsEmpty;
@@ -107,5 +106,4 @@ TEST(NoiseModelTest, AnEffectUnderSlowNoiseIsFoundBehindTheFilter) {
   EXPECT_TRUE(sut.search.whitened);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::noise_model_test

@@ -10,8 +10,7 @@
 #include "services/core/diagnosis/fitting/fit.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::number_errors_test {
 
 constexpr std::size_t kSamples = 4000;
 
@@ -108,5 +107,4 @@ TEST(NumberErrorsTest, ARecordWithoutSamplesToSpareDeterminesNothing) {
   EXPECT_TRUE(std::isnan(NumberErrors(model, line, signals).of_number(0)));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::number_errors_test

@@ -8,8 +8,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::partial_coherence_test {
 
 constexpr std::size_t kCount = 6000;
 
@@ -112,5 +111,4 @@ TEST(PartialCoherenceTest, ARecordTooShortIsNotComputed) {
   EXPECT_TRUE(sut.partial.empty());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::partial_coherence_test

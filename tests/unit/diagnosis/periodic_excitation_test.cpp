@@ -9,8 +9,7 @@
 #include "tests/unit/diagnosis/made_measurement.hpp"
 #include "tests/unit/diagnosis/made_multisine.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::periodic_excitation_test {
 
 Signals signals_of(const std::vector<double>& u) {
   return {made::measurement_of({{"u", "V", u}, {"y", "N", made::white(u.size(), 99)}}), {"u"}, "y"};
@@ -122,5 +121,4 @@ TEST(PeriodicExcitationTest, SeveralInputsHaveTheirCommonPeriod) {
   EXPECT_FALSE(periodicity_of(Signals(noisy, {"u", "v"}, "y")).has_value());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::periodic_excitation_test

@@ -10,8 +10,7 @@
 #include "services/core/diagnosis/diagnose.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::planted_limits_test {
 
 using made::white;
 
@@ -116,5 +115,4 @@ TEST(PlantedLimitsTest, SlowNoiseIsWhitenedBeforeTheLimitIsTaken) {
   EXPECT_LT(limit_under(0.98), limit_under(0.0));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::planted_limits_test

@@ -15,8 +15,7 @@
 #include "tests/planted/to_measurement.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::planted_sizes_test {
 
 constexpr int kDraws = 40;
 
@@ -156,5 +155,4 @@ TEST(PlantedSizesTest, TheLagIsThatOfThePath) {
                  "lag", truth_of(draft, "lag")));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::planted_sizes_test

@@ -8,8 +8,7 @@
 // Recordings of a simulator that shares no code with the engine, in a few clear cases: 40 s,
 // an effect of a quarter of the force, noise of a hundredth.  tests/benchmark/planted_effects.cpp
 // measures how often the engine is right.
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::planted_test {
 
 Diagnosis diagnosis_of(std::uint64_t seed, std::vector<planted::Kind> kinds) {
   planted::Spec spec;
@@ -38,5 +37,4 @@ TEST(PlantedTest, WhereNothingIsPlantedNothingIsFound) {
   EXPECT_GT(sut.final_error.vaf_percent, 99.9);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::planted_test

@@ -8,8 +8,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::repeats_test {
 
 constexpr std::size_t kPeriod = 250;
 
@@ -116,5 +115,4 @@ TEST(RepeatsTest, WhatRepeatsExactlyHasNoNoise) {
                    .has_value());
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::repeats_test

@@ -11,8 +11,7 @@
 #include "services/core/signal/difference_model.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::response_prior_test {
 
 constexpr double kRate_hz = 100.0;
 const std::vector<ExcitedBand> kBands{{"u", 0.7, 2.0}};
@@ -175,5 +174,4 @@ TEST(ResponsePriorTest, WhatTheSamplesDetermineIsNotHeldBack) {
               0.036 * gain_at(kAssumed, 1.2));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::response_prior_test

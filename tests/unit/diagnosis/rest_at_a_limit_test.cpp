@@ -9,8 +9,7 @@
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::rest_at_a_limit_test {
 
 constexpr std::size_t kCount = 6000;
 constexpr double kLimit = 0.9;
@@ -90,5 +89,4 @@ TEST(RestAtALimitTest, AnOutputThatHasSettledHasNoLimit) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::rest_at_a_limit_test

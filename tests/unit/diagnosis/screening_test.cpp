@@ -7,8 +7,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::screening_test {
 
 constexpr std::size_t kCount = 6000;
 constexpr double kNoise = 0.05;
@@ -136,5 +135,4 @@ TEST(ScreeningTest, ColumnsAreSeenThroughTheOutputsMap) {
   EXPECT_LT(std::abs(sut.gain({clipped}).share), 1e-9);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::screening_test

@@ -12,8 +12,7 @@
 #include "services/core/diagnosis/recordings_out.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::search_test {
 
 using testing::ElementsAre;
 
@@ -237,5 +236,4 @@ TEST(RecordingsOutTest, AnEffectIsRefutedThatHelpsOneAtMostAndHarmsAnother) {
   EXPECT_TRUE(refuted({0.3, std::numeric_limits<double>::quiet_NaN()}, kLeast));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::search_test

@@ -10,8 +10,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::seen_range_test {
 
 using testing::DoubleNear;
 using testing::ElementsAre;
@@ -129,5 +128,4 @@ TEST(SeenRangeTest, WhatARecordingLeavesIsReportedWithItsShare) {
   EXPECT_NEAR(sut[1].share, 2.0 / 3.0, 0.02);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::seen_range_test

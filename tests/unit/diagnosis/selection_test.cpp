@@ -10,8 +10,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::selection_test {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -161,5 +160,4 @@ TEST(SelectionTest, RoundingIsMeasuredByTheOutput) {
   EXPECT_TRUE(is_rounding(0.0, signals));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::selection_test

@@ -9,8 +9,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::shape_exchange_test {
 
 constexpr std::size_t kCount = 3000;
 
@@ -141,5 +140,4 @@ TEST_F(ShapeExchangeTest, ACurveIsReadByTheLawThatDrewIt) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::shape_exchange_test

@@ -10,8 +10,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::share_test {
 
 constexpr std::size_t kCount = 6000;
 
@@ -131,5 +130,4 @@ TEST(ShareTest, WhatAMeanOverAPeriodKeepsIsSlow) {
   EXPECT_NEAR(slow_share(quick + slow, whole, 100), 0.5, 0.01);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::share_test

@@ -12,8 +12,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::signals_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -259,5 +258,4 @@ TEST(SignalsTest, AMeasurementThatIsNoneIsRefusedBeforeItIsRead) {
   EXPECT_THAT(error_of(measurement, {"u"}, "y"), HasSubstr("stretches of 6000 samples"));
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::signals_test

@@ -10,8 +10,7 @@
 #include "services/core/diagnosis/model/seen_range.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::stability_test {
 
 constexpr std::size_t kCount = 3000;
 
@@ -86,5 +85,4 @@ TEST(StabilityTest, NamesAreThoseOfTheFile) {
   EXPECT_EQ(name_of(Stability::kRefused), "refused");
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::stability_test

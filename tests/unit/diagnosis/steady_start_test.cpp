@@ -11,8 +11,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::steady_start_test {
 
 using testing::DoubleNear;
 using testing::Each;
@@ -171,5 +170,4 @@ TEST(SteadyStartTest, ALagLongerThanAChannelShowsIsNotProposed) {
   EXPECT_GT(longest_of_slow, 5.0) << "a slow channel may pass a slow path";
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::steady_start_test

@@ -10,8 +10,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::verdict_stability_test {
 
 using testing::ElementsAre;
 using testing::Pair;
@@ -62,5 +61,4 @@ TEST(VerdictStabilityTest, AFifthOfTheRecordWeighsNothingEachTimeAnother) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::verdict_stability_test

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::wide_sums_test {
 
 constexpr Eigen::Index kRows = 43;  // no multiple of what is summed at once
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -74,5 +73,4 @@ TEST(WideSumsTest, AFilterInPlaceSumsTheSamplesBefore) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::wide_sums_test

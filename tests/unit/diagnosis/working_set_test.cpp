@@ -11,8 +11,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::diagnosis {
-namespace {
+namespace stillhand::diagnosis::working_set_test {
 
 using testing::HasSubstr;
 using testing::SizeIs;
@@ -174,5 +173,4 @@ TEST(WorkingSetTest, InputsWithoutABandAreNoReasonToFail) {
   EXPECT_DOUBLE_EQ(working_set(measurement, {"u"}).rate_hz, 100.0);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnosis
+}  // namespace stillhand::diagnosis::working_set_test

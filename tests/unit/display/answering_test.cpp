@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::answering_test {
 
 class AnsweringTest : public testing::Test {
  protected:
@@ -94,5 +93,4 @@ TEST_F(AnsweringTest, APromptWithoutStepsTakesNoAnswer) {
   EXPECT_FALSE(sut_.answer());
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::answering_test

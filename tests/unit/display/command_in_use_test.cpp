@@ -8,8 +8,7 @@
 
 #include "services/core/display/tracking_display.hpp"
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::command_in_use_test {
 
 TEST(CommandInUseTest, TheNewestCommandIsTakenForTenTicks) {
   CommandInUse sut;
@@ -40,5 +39,4 @@ TEST(CommandInUseTest, TheCursorFollowsTheRest) {
   EXPECT_EQ(sut.step({2, 0.3, 0.0}).cursor_m, config.gain_m_rad * 0.3);
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::command_in_use_test

@@ -13,8 +13,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/folder.hpp"
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::gamepad_test {
 
 std::vector<std::byte> event(unsigned type, unsigned code, std::int32_t value) {
   input_event out{};
@@ -98,5 +97,4 @@ TEST(GamepadRefusalTest, ADeviceThatIsNotThereIsRefused) {
   EXPECT_THROW(Gamepad("/nowhere/event5"), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::gamepad_test

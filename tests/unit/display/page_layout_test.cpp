@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::page_layout_test {
 
 // A type whose letters are all as wide as the widest of DejaVu Sans Bold's lower case (m: 1.04 em).
 double wide(const std::string& text, double em_m, bool /*bold*/) {
@@ -154,5 +153,4 @@ TEST(PageLayoutTest, LinesBreakBetweenWords) {
   EXPECT_TRUE(broken("", 8.0, width).empty());
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::page_layout_test

@@ -4,8 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::page_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -219,5 +218,4 @@ TEST(ClockTextTest, SecondsAreRoundedUp) {
   EXPECT_EQ(clock_text(1e300), "99:59:59");
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::page_test

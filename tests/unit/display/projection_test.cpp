@@ -5,8 +5,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::projection_test {
 
 TEST(ProjectionTest, TheScreensEdgesAreTheImagesEdges) {
   const Projection sut(ScreenConfig{}, 1024, 768);  // 4:3 as the screen
@@ -54,5 +53,4 @@ TEST(ProjectionTest, ImpossibleImagesAreRefused) {
   EXPECT_THROW(Projection(flat, 1024, 768), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::projection_test

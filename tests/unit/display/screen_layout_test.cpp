@@ -5,8 +5,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::screen_layout_test {
 
 constexpr double kBox_m = 0.030;
 constexpr double kTrack_m = 0.057 - 0.2286 / 2.0;
@@ -65,5 +64,4 @@ TEST(ScreenLayoutTest, ABoxThatLeavesTheScreenIsRefused) {
   EXPECT_THROW(ScreenLayout(screen, 0.050), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::screen_layout_test

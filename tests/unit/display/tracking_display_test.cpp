@@ -9,8 +9,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::tracking_display_test {
 
 constexpr Tick kStart = 4'000;
 constexpr Tick kDuration = 20'000;
@@ -203,5 +202,4 @@ TEST(TrackingDisplayTest, WhatCannotBeShownIsRefused) {
   EXPECT_THROW(sut.arm(bad, 1), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::tracking_display_test

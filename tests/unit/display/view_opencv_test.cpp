@@ -12,8 +12,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::view_opencv_test {
 
 constexpr int kColumns = 1024;
 constexpr int kRows = 768;
@@ -201,5 +200,4 @@ TEST(TrackingViewTest, ImpossibleSizesAreRefused) {
   EXPECT_THROW(TrackingView(kConfig, 0, 480), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::view_opencv_test

@@ -13,8 +13,7 @@
 #include "services/processes/display/view_opencv.hpp"
 #include "tests/support/folder.hpp"
 
-namespace stillhand::display {
-namespace {
+namespace stillhand::display::view_output_test {
 
 constexpr int kColumns = 640;
 constexpr int kRows = 480;
@@ -73,5 +72,4 @@ TEST(ScreenWindowTest, WithoutADisplayItIsRefusedInsteadOfEndingTheProcess) {
   EXPECT_THROW(ScreenWindow("screen", projection, false), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::display
+}  // namespace stillhand::display::view_output_test

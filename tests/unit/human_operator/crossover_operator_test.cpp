@@ -11,8 +11,7 @@
 #include "services/core/signal/random.hpp"
 #include "tests/unit/human_operator/tracking_loop.hpp"
 
-namespace stillhand::human_operator {
-namespace {
+namespace stillhand::human_operator::crossover_operator_test {
 
 using Complex = std::complex<double>;
 constexpr double kScale_m = 0.049;  // the display's default
@@ -246,5 +245,4 @@ TEST(CrossoverOperatorTest, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(CrossoverOperator{nan}, ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::human_operator
+}  // namespace stillhand::human_operator::crossover_operator_test

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::human_operator {
-namespace {
+namespace stillhand::human_operator::fast_error_test {
 
 /// Mean of E over the last 20 s of 60 s of a sine of 10 mm.
 double mean_square(double frequency_hz) {
@@ -38,5 +37,4 @@ TEST(FastErrorTest, ResetForgetsEverything) {
   EXPECT_EQ(sut.mean_square_m2(), 0.0);
 }
 
-}  // namespace
-}  // namespace stillhand::human_operator
+}  // namespace stillhand::human_operator::fast_error_test

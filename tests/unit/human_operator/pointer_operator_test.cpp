@@ -10,8 +10,7 @@
 #include "services/core/signal/random.hpp"
 #include "tests/unit/human_operator/tracking_loop.hpp"
 
-namespace stillhand::human_operator {
-namespace {
+namespace stillhand::human_operator::pointer_operator_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -109,5 +108,4 @@ TEST(PointerOperatorTest, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(PointerOperator{config}, ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::human_operator
+}  // namespace stillhand::human_operator::pointer_operator_test

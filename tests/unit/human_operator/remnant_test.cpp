@@ -6,8 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::human_operator {
-namespace {
+namespace stillhand::human_operator::remnant_test {
 
 constexpr int kSeconds = 4000;
 
@@ -71,5 +70,4 @@ TEST(RemnantTest, GrowthMultipliesItsPower) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::human_operator
+}  // namespace stillhand::human_operator::remnant_test

@@ -8,8 +8,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::apply_mapping_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -143,5 +142,4 @@ TEST(ApplyMappingTest, TooManyValuesAreRefusedBeforeTheyAreRead) {
   EXPECT_THAT(error_of(text, mapping({"t=t [s]", "f=f [N]"})), HasSubstr("at most 1000 values"));
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::apply_mapping_test

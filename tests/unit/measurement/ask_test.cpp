@@ -9,8 +9,7 @@
 #include "apps/libraries/measurement/tables/text_table.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::ask_test {
 
 using testing::HasSubstr;
 
@@ -56,5 +55,4 @@ TEST(AskTest, WithoutATimeTheSampleRateIsAskedFor) {
 
 TEST(AskTest, AnswersThatEndEarlyAreRefused) { EXPECT_THROW(ask(kRide, "\n\n"), ConfigError); }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::ask_test

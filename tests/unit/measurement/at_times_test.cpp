@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::at_times_test {
 
 TEST(AtTimesTest, ACubicIsMetAndARowIsUnchanged) {
   const auto cubic = [](double t) { return 1.0 + t * (2.0 - t * (3.0 - t)); };
@@ -40,5 +39,4 @@ TEST(AtTimesTest, NothingIsInventedOutsideAndInGaps) {
   EXPECT_TRUE(std::isnan(at_times({}, {}, {0.0}, 1.0)[0]));
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::at_times_test

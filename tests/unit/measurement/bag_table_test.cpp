@@ -13,8 +13,7 @@
 #include "tests/support/cdr_bytes.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::bag_table_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -206,5 +205,4 @@ TEST(BagTableTest, StampsThatGoBackInOneTopicAloneAreRefused) {
               HasSubstr("time stamps that go back, but not those of /imu/data"));
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::bag_table_test

@@ -9,8 +9,7 @@
 
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::bridge_test {
 
 using testing::Each;
 using testing::ElementsAre;
@@ -153,5 +152,4 @@ TEST(BridgeTest, OnlySamplesInsideAGapWeighNothing) {
   EXPECT_THAT(sut, Each(1.0));
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::bridge_test

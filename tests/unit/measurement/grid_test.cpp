@@ -11,8 +11,7 @@
 #include "services/core/signal/random.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::grid_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -162,5 +161,4 @@ TEST(GridTest, MoreThanAskedForIsRefused) {
   EXPECT_THAT(error_of(rows, 399), HasSubstr("200 samples of 2 channels, want at most 399 values"));
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::grid_test

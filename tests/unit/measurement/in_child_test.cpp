@@ -10,8 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::in_child_test {
 
 using testing::HasSubstr;
 
@@ -74,5 +73,4 @@ TEST(InChildTest, NothingOfTheParentIsWrittenTwice) {
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "a");
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::in_child_test

@@ -6,8 +6,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::join_test {
 
 using diagnosis::Measurement;
 using testing::ElementsAre;
@@ -99,5 +98,4 @@ TEST(JoinTest, WhatTheScreeningOfOneLeftOutIsLeftOutOfAll) {
 
 TEST(JoinTest, NothingIsRefused) { EXPECT_THROW((void)join({}), ConfigError); }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::join_test

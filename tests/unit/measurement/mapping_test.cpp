@@ -10,8 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::mapping_test {
 
 using testing::HasSubstr;
 
@@ -87,5 +86,4 @@ TEST(MappingTest, AWrongFileIsRefusedWithItsPlace) {
   EXPECT_THAT(refusal("columns: []\n"), HasSubstr("columns"));
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::mapping_test

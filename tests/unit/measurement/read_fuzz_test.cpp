@@ -19,8 +19,7 @@
 // Valid files, spoilt by a seeded generator: each is read into a measurement that check() accepts,
 // or refused with a ConfigError of one line.
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::read_fuzz_test {
 
 using Random = std::mt19937;
 
@@ -362,5 +361,4 @@ TEST(ReadFuzzTest, ASpoiltTdmsFileIsReadOrRefused) {
                  {good_tdms(false), good_tdms(true)}, spoilt_once);
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::read_fuzz_test

@@ -13,8 +13,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::read_test {
 
 using diagnosis::Measurement;
 using testing::HasSubstr;
@@ -327,5 +326,4 @@ TEST(ReadTest, MoreThanAskedForIsRefusedBeforeItIsParsed) {
               HasSubstr("got 101 rows of 4 channels, want at most 399 values"));
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::read_test

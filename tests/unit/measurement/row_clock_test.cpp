@@ -9,8 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::row_clock_test {
 
 recording::Recording at(std::vector<double> time_s) {
   recording::Recording rows;
@@ -182,5 +181,4 @@ TEST(RowClockTest, TimesWithoutARateAreRefused) {
   EXPECT_THROW((void)place_rows(at({0.0, 1e-310, 2e-310})), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::row_clock_test

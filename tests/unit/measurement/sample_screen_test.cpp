@@ -10,8 +10,7 @@
 
 #include "tests/support/spoiled_recordings.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::sample_screen_test {
 
 using diagnosis::SampleFault;
 using recording::Recording;
@@ -261,5 +260,4 @@ TEST(SampleScreenTest, AChannelThatRestsOrIsHitHasNoFault) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::sample_screen_test

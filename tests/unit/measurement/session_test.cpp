@@ -14,8 +14,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/session_file.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::session_test {
 
 using diagnosis::Measurement;
 using stillhand_msgs::MOTION_BAND_NOISE;
@@ -293,5 +292,4 @@ TEST(SessionTest, TicksAndLengthsThatNoSessionHasAreNotBelieved) {
   EXPECT_EQ(read_measurement(file_of(file.close())).size(), 100u);
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::session_test

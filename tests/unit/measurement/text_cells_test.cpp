@@ -5,8 +5,7 @@
 
 #include <string>
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::text_cells_test {
 
 // What a cell holds, for one line of a failure.
 std::string read(std::string_view cell, char decimal = '.') {
@@ -48,5 +47,4 @@ TEST(TextCellsTest, AStampIsReadInSeconds) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::text_cells_test

@@ -7,8 +7,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::text_layout_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -136,5 +135,4 @@ TEST(TextLayoutTest, SaysWhatIsWrong) {
               HasSubstr("ride.csv:1:1: got 2 titles above rows of 4 cells, with ',' between them"));
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::text_layout_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::titles_test {
 
 TEST(TitlesTest, NameAndUnitAreFoundInTheUsualForms) {
   struct Case {
@@ -23,5 +22,4 @@ TEST(TitlesTest, NameAndUnitAreFoundInTheUsualForms) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::titles_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::measurement {
-namespace {
+namespace stillhand::measurement::units_test {
 
 double converted(double value, const std::string& from, const std::string& to, Gain gain = {}) {
   const auto conversion = unit_conversion(from, gain, to);
@@ -76,5 +75,4 @@ TEST(UnitsTest, AScaleWithAnotherZeroIsMoved) {
   EXPECT_NEAR(converted(20.0, "degC", "K"), 293.15, 1e-12);
 }
 
-}  // namespace
-}  // namespace stillhand::measurement
+}  // namespace stillhand::measurement::units_test

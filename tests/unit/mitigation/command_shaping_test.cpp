@@ -10,8 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::cancellation {
-namespace {
+namespace stillhand::cancellation::command_shaping_test {
 
 using Kind = ShapingConfig::Kind;
 
@@ -71,5 +70,4 @@ TEST(CommandShapingTest, RefusesAFilterOutOfRange) {
   EXPECT_THROW(CommandShaping({Kind::kNotch, 1.0, 0.0}), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::command_shaping_test

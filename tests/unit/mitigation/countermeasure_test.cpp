@@ -14,8 +14,7 @@
 #include "services/core/admittance/arm_fit.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::cancellation {
-namespace {
+namespace stillhand::cancellation::countermeasure_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kLever_m = 0.10;
@@ -420,5 +419,4 @@ TEST(CountermeasureTest, RefusesAnUnsoundModel) {
   EXPECT_THROW(Countermeasure({}, recipe), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::countermeasure_test

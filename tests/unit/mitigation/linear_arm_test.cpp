@@ -12,8 +12,7 @@
 #include "services/core/admittance/arm_fit.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::cancellation {
-namespace {
+namespace stillhand::cancellation::linear_arm_test {
 
 using Complex = std::complex<double>;
 
@@ -109,5 +108,4 @@ TEST(LinearArmTest, RefusesAnArmThatIsNone) {
   EXPECT_THROW(LinearArm(unknown, {}), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::linear_arm_test

@@ -11,8 +11,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/signal/second_order_lag.hpp"
 
-namespace stillhand::cancellation {
-namespace {
+namespace stillhand::cancellation::lms_filter_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kTicks = 60'000;
@@ -151,5 +150,4 @@ TEST(LmsFilterTest, RefusesSettingsOutOfRange) {
   EXPECT_THROW(LmsFilter({.step = 0.1, .path = SecondaryPath{1.0, 1000.0, 100.0}}), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::lms_filter_test

@@ -22,8 +22,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::cancellation {
-namespace {
+namespace stillhand::cancellation::recipe_test {
 
 using Position = std::optional<signal::DifferenceModel>;
 const Position kPosition = signal::DifferenceModel{1000.0, {-0.002}, {1.0}};
@@ -242,5 +241,4 @@ TEST(RecipeTest, WithoutItsModelAPartIsRefused) {
   EXPECT_EQ(refusal({{PartKind::kSignal}}), "accepted");
 }
 
-}  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::recipe_test

@@ -11,8 +11,7 @@
 #include "services/core/admittance/arm_fit.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::cancellation {
-namespace {
+namespace stillhand::cancellation::scheduled_force_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
@@ -109,5 +108,4 @@ TEST(ScheduledForceTest, RefusesSettingsOutOfRange) {
   EXPECT_THROW(ScheduledForce{config}, ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::scheduled_force_test

@@ -10,8 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::cancellation {
-namespace {
+namespace stillhand::cancellation::stick_impedance_test {
 
 TEST(StickImpedanceTest, HoldsAgainstAStillStickByItsStiffness) {
   StickImpedance sut({.stiffness_n_m = 400.0});
@@ -50,5 +49,4 @@ TEST(StickImpedanceTest, RefusesWhatGivesEnergy) {
   EXPECT_THROW(StickImpedance({.lever_m = 0.0}), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::stick_impedance_test

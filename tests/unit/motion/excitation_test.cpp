@@ -11,8 +11,7 @@
 #include "services/core/motion/peak_limit.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::motion {
-namespace {
+namespace stillhand::motion::excitation_test {
 
 MotionProfile profile_of(MotionKind kind) {
   MotionProfile profile;
@@ -185,5 +184,4 @@ TEST(PeakLimitTest, AnImpossibleBoundIsRefused) {
   EXPECT_THROW(limit_peaks(sut, {1.6, 0.15}), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::motion
+}  // namespace stillhand::motion::excitation_test

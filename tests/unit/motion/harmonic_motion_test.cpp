@@ -9,8 +9,7 @@
 #include "services/core/signal/multisine.hpp"
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::motion {
-namespace {
+namespace stillhand::motion::harmonic_motion_test {
 
 constexpr Tick kPeriod = 20'000;
 
@@ -95,5 +94,4 @@ TEST(HarmonicMotionTest, TheGridHasOnlySmallFactorsAndEnoughPoints) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::motion
+}  // namespace stillhand::motion::harmonic_motion_test

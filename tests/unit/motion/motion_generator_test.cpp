@@ -9,8 +9,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::motion {
-namespace {
+namespace stillhand::motion::motion_generator_test {
 
 constexpr Tick kStart = 5'000;
 constexpr Tick kDuration = 8'000;
@@ -147,5 +146,4 @@ TEST(MotionGeneratorTest, TwoGeneratorsGiveTheSameBits) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::motion
+}  // namespace stillhand::motion::motion_generator_test

@@ -10,8 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::motion {
-namespace {
+namespace stillhand::motion::motion_trajectory_test {
 
 // Paper III-A: 0.7-4 Hz, 0.75 g peak, 120 s.  The RMS is not given there; 2 m/s^2 makes the
 // peak 3.7 times the RMS, usual for noise.
@@ -225,5 +224,4 @@ TEST(MotionTrajectoryTest, KindsHaveWords) {
   EXPECT_EQ(to_string(MotionKind::kRide), "ride");
 }
 
-}  // namespace
-}  // namespace stillhand::motion
+}  // namespace stillhand::motion::motion_trajectory_test

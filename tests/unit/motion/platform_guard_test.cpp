@@ -13,8 +13,7 @@
 #include "services/core/motion/motion_trajectory.hpp"
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::motion {
-namespace {
+namespace stillhand::motion::platform_guard_test {
 
 constexpr double kDt_s = kControlPeriod_s;
 
@@ -321,5 +320,4 @@ TEST(PlatformGuardTest, LimitsBeyondTheApparatusAreRefused) {
   EXPECT_THROW(PlatformGuard{limits}, ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::motion
+}  // namespace stillhand::motion::platform_guard_test

@@ -14,8 +14,7 @@
 #include "services/core/recording/mcap/memory_bytes.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::motion {
-namespace {
+namespace stillhand::motion::ride_file_test {
 
 using testing::DoubleEq;
 using testing::ElementsAre;
@@ -93,5 +92,4 @@ TEST(RideFileTest, WhatIsNoRideIsRefusedWithItsReason) {
   for (const auto& [path, reason] : cases) EXPECT_THAT(error_of(path), HasSubstr(reason)) << path;
 }
 
-}  // namespace
-}  // namespace stillhand::motion
+}  // namespace stillhand::motion::ride_file_test

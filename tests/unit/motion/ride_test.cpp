@@ -17,8 +17,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/motion/motion_trajectory.hpp"
 
-namespace stillhand::motion {
-namespace {
+namespace stillhand::motion::ride_test {
 
 // A ride of sines, sampled at a rate that is no divisor of 1 kHz.
 MotionProfile ride_of(const std::vector<std::pair<double, double>>& hz_and_m_s2, double seconds,
@@ -188,5 +187,4 @@ TEST(RideTest, AMeasuredCarRideDrivesThePlatform) {
   RecordProperty("peak_position_m", std::to_string(sut.report().peak_position_m));
 }
 
-}  // namespace
-}  // namespace stillhand::motion
+}  // namespace stillhand::motion::ride_test

@@ -9,8 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
 
-namespace stillhand::diagnose {
-namespace {
+namespace stillhand::diagnose::broken_tie_test {
 
 namespace made = next_run::made;
 using testing::HasSubstr;
@@ -59,5 +58,4 @@ TEST(BrokenTieTest, APlanWhoseCandidatesAreNotFiniteIsRefused) {
       ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::diagnose
+}  // namespace stillhand::diagnose::broken_tie_test

@@ -5,8 +5,7 @@
 #include "services/core/next_run/tie.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
 
-namespace stillhand::next_run {
-namespace {
+namespace stillhand::next_run::candidates_test {
 
 using testing::AllOf;
 using testing::ElementsAre;
@@ -115,5 +114,4 @@ TEST(CandidatesTest, ARollIsTiltedAndAStickMoved) {
               ElementsAre(HasSubstr("tilt the platform"), HasSubstr("with the stick free")));
 }
 
-}  // namespace
-}  // namespace stillhand::next_run
+}  // namespace stillhand::next_run::candidates_test

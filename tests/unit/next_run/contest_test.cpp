@@ -8,8 +8,7 @@
 
 #include "tests/unit/next_run/two_channels.hpp"
 
-namespace stillhand::next_run {
-namespace {
+namespace stillhand::next_run::contest_test {
 
 using testing::ElementsAre;
 
@@ -127,5 +126,4 @@ TEST(ContestTest, WhatTheRecordingBeatsIsNotTied) {
   EXPECT_EQ(sut.still_tied().size(), 1U);
 }
 
-}  // namespace
-}  // namespace stillhand::next_run
+}  // namespace stillhand::next_run::contest_test

@@ -9,8 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
 
-namespace stillhand::next_run {
-namespace {
+namespace stillhand::next_run::design_test {
 
 // As the lab asks for a planned run of 20 s.
 Bounds bounds() {
@@ -108,5 +107,4 @@ TEST(DesignTest, APairIsOutOfReachIfNeitherIsToldFromTheOther) {
   EXPECT_FALSE(sut.out_of_reach(0, 1));
 }
 
-}  // namespace
-}  // namespace stillhand::next_run
+}  // namespace stillhand::next_run::design_test

@@ -14,8 +14,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
 
-namespace stillhand::next_run {
-namespace {
+namespace stillhand::next_run::plan_file_test {
 
 class PlanFileTest : public testing::Test {
  protected:
@@ -94,5 +93,4 @@ TEST_F(PlanFileTest, AnotherRideIsRefused) {
   EXPECT_THAT(refused(), testing::HasSubstr("the ride next to its plan"));
 }
 
-}  // namespace
-}  // namespace stillhand::next_run
+}  // namespace stillhand::next_run::plan_file_test

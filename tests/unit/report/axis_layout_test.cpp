@@ -12,8 +12,7 @@
 #include "apps/libraries/report/plot/panel_layout.hpp"
 #include "apps/libraries/report/text/text.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::axis_layout_test {
 
 using testing::ElementsAre;
 
@@ -178,5 +177,4 @@ TEST(ExtentTest, OutliersOfABoxCount) {
   EXPECT_EQ(extent_y(panel).high, 12.0);
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::axis_layout_test

@@ -14,8 +14,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::draw_test {
 
 using test::every_kind;
 using test::one_line;
@@ -194,5 +193,4 @@ TEST(DrawDeathTest, ArraysOfUnequalLengthAreABug) {
   EXPECT_DEATH(draw({&figure, 1}), "size");
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::draw_test

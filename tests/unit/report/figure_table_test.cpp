@@ -5,8 +5,7 @@
 
 #include <limits>
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::figure_table_test {
 
 constexpr const char* kHead = "panel,x_axis,y_axis,series,x,x_label,y,y_low,y_high\n";
 
@@ -37,5 +36,4 @@ TEST(FigureTableTest, ATextWithACommaOrAQuoteIsOneCell) {
   EXPECT_EQ(table_of(panel), kHead + std::string("1,,\"a, b\",\"5\"\" stick\",1,,2,,\n"));
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::figure_table_test

@@ -13,8 +13,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::gnuplot_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -112,5 +111,4 @@ TEST(GnuplotTest, NothingStaysOpenOrUnreaped) {
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);  // ECHILD: no child is left
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::gnuplot_test

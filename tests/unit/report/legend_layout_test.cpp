@@ -10,8 +10,7 @@
 
 #include "apps/libraries/report/text/text.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::legend_layout_test {
 
 using testing::ElementsAre;
 
@@ -97,5 +96,4 @@ TEST(LegendLayoutTest, AMovedBlockKeepsItsShape) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::legend_layout_test

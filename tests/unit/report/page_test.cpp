@@ -12,8 +12,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::page_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -162,5 +161,4 @@ TEST(TableTest, InATerminalColumnsAreAsWideAsTheirLongestText) {
             "error        20\n");
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::page_test

@@ -8,8 +8,7 @@
 
 #include "apps/libraries/report/text/text.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::panel_layout_test {
 
 Panel panel(const std::string& title, double high) {
   Panel result{.title = title};
@@ -135,5 +134,4 @@ TEST(PanelLayoutTest, CategoriesThatDoNotFitSideBySideAreSlantedAndHaveRoomBelow
   EXPECT_GT(sut[0].x_label_px - 6.5, sut[0].plot.bottom + 10.0 + hang_px);
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::panel_layout_test

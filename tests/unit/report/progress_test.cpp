@@ -13,8 +13,7 @@
 #include <functional>
 #include <string>
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::progress_test {
 
 using testing::HasSubstr;
 
@@ -88,5 +87,4 @@ TEST(ProgressLineTest, EachStepHasALineOfItsOwnAndFinishEndsItOnce) {
   EXPECT_GT(shown.find("draw"), shown.find('\n'));
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::progress_test

@@ -14,8 +14,7 @@
 #include "services/files/digest/content_digest.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::provenance_test {
 
 using nlohmann::ordered_json;
 using testing::HasSubstr;
@@ -98,5 +97,4 @@ TEST(ProvenanceTest, AHandThatChangesANumberIsNoticed) {
   rig::require_as_written(with_provenance(changed, {"1.0", "", "", {}}), "m.json");
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::provenance_test

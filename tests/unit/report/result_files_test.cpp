@@ -11,8 +11,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::result_files_test {
 
 namespace fs = std::filesystem;
 using support::text_of;
@@ -116,5 +115,4 @@ TEST_F(ResultFilesTest, ADashGetsTheResultAloneAndTheRestGoesToStandardError) {
   EXPECT_THAT(error_of({{"--json", "-"}, {"--save", "-"}}), HasSubstr("one result"));
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::result_files_test

@@ -12,8 +12,7 @@
 #include "services/files/recording/file_io.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::staged_folder_test {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
@@ -154,5 +153,4 @@ TEST_F(StagedFolderTest, AFileThatCannotBeWrittenIsNamedAtItsPlace) {
               ThrowsMessage<std::runtime_error>(HasSubstr((out() / "missing/a.txt").string())));
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::staged_folder_test

@@ -4,8 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::svg_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -60,5 +59,4 @@ TEST(InlineSvgTest, TheDeclarationGoesAndTheDescriptionIsEscaped) {
   EXPECT_THAT(sut, HasSubstr("width=\"9\"></svg>"));
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::svg_test

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::text_test {
 
 TEST(TextTest, HtmlKeepsNoCharacterThatOpensATagOrEndsAnAttribute) {
   EXPECT_EQ(html_escaped("<script>\"a\" & 'b'</script>"),
@@ -81,5 +80,4 @@ TEST(TextTest, ARestoredShareHasItsIntervalOrSaysThatItHasNoneAndAWordOutsideOfZ
   EXPECT_EQ(restored(-0.2), "\u221220 % (no interval), worse than B");
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::text_test

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace stillhand::report {
-namespace {
+namespace stillhand::report::thinning_test {
 
 using testing::ElementsAre;
 
@@ -86,5 +85,4 @@ TEST(ThinPointsTest, OfPointsOnOneSquareTheFirstStays) {
   EXPECT_THAT(thin_points(x, y), ElementsAre(0, 2, 3));
 }
 
-}  // namespace
-}  // namespace stillhand::report
+}  // namespace stillhand::report::thinning_test

@@ -3,8 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace stillhand::settings {
-namespace {
+namespace stillhand::settings::check_number_test {
 
 TEST(NumberBetweenTest, TakesBothEndsAndWhatLiesBetween) {
   const auto sut = number_between(-1.5, 49.0);
@@ -21,5 +20,4 @@ TEST(NumberBetweenTest, RefusesWhatIsOutsideOrNoNumberAndSaysWhatIsWanted) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::settings
+}  // namespace stillhand::settings::check_number_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::settings {
-namespace {
+namespace stillhand::settings::edit_text_test {
 
 TEST(WithSettingTest, ChangesALineAndKeepsItsComment) {
   EXPECT_EQ(with_setting("a: 1   # [V] why\nb: 2\n", "a", "3"), "a: 3   # [V] why\nb: 2\n");
@@ -29,5 +28,4 @@ TEST(WithSettingTest, LeavesGroupsAndLongerNamesAlone) {
   EXPECT_EQ(with_setting("g:\n  a: 1\naa: 2\n", "a", "3"), "g:\n  a: 1\naa: 2\na: 3\n");
 }
 
-}  // namespace
-}  // namespace stillhand::settings
+}  // namespace stillhand::settings::edit_text_test

@@ -10,8 +10,7 @@
 
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::settings {
-namespace {
+namespace stillhand::settings::json_entry_test {
 
 using support::refusal;
 using testing::AllOf;
@@ -167,5 +166,4 @@ TEST(ParsedJsonTest, NotANumberAndCommentsAreNoJson) {
   }
 }
 
-}  // namespace
-}  // namespace stillhand::settings
+}  // namespace stillhand::settings::json_entry_test

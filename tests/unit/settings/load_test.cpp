@@ -12,8 +12,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::settings {
-namespace {
+namespace stillhand::settings::load_test {
 
 using testing::HasSubstr;
 
@@ -157,5 +156,4 @@ TEST(LoadTest, AMissingFileAndAFolderAreRefused) {
   EXPECT_THROW(load<OuterConfig>(folder.path(), "rig"), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::settings
+}  // namespace stillhand::settings::load_test

@@ -11,8 +11,7 @@
 
 #include "services/files/settings/check_name.hpp"
 
-namespace stillhand::settings {
-namespace {
+namespace stillhand::settings::nearest_test {
 
 using Words = std::vector<std::string_view>;
 
@@ -86,5 +85,4 @@ TEST(CheckNameTest, OnlyAnEmptyNameIsRefused) {
   EXPECT_EQ(check_name("out"), "");
 }
 
-}  // namespace
-}  // namespace stillhand::settings
+}  // namespace stillhand::settings::nearest_test

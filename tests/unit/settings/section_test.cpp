@@ -19,8 +19,7 @@
 #include "services/files/settings/yaml_text.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::settings {
-namespace {
+namespace stillhand::settings::section_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -200,5 +199,4 @@ TEST(SectionReaderTest, AQuotedNumberIsATextAndNoNumber) {
   EXPECT_THROW(load_text<SensorConfig>("gain: 1_000\n", "sensor"), ConfigError);
 }
 
-}  // namespace
-}  // namespace stillhand::settings
+}  // namespace stillhand::settings::section_test

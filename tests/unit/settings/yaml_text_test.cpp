@@ -6,8 +6,7 @@
 #include "services/core/rig/rig.hpp"
 #include "services/files/settings/load.hpp"
 
-namespace stillhand::settings {
-namespace {
+namespace stillhand::settings::yaml_text_test {
 
 TEST(YamlTextTest, WhatIsWrittenReadsAsTheSameSettings) {
   rig::RigConfig config;
@@ -41,5 +40,4 @@ TEST(YamlTextTest, AStringThatYamlWouldReadOtherwiseIsQuoted) {
   EXPECT_EQ(again.count, words.count);
 }
 
-}  // namespace
-}  // namespace stillhand::settings
+}  // namespace stillhand::settings::yaml_text_test
