@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <set>
 
 #include "services/core/diagnosis/effect_sizes.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
@@ -172,7 +173,7 @@ void drop_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& bl
   diagnosis.effects.clear();
   diagnosis.model = diagnosis.baseline.model;
   diagnosis.search = {
-      diagnosis.model, {}, 0, false, false, {}, std::move(diagnosis.search.last_tried), {}};
+      diagnosis.model, {}, 0, false, false, {}, {}, std::move(diagnosis.search.last_tried), {}};
   add_effects(diagnosis, signals, blocks, variance);
 }
 
@@ -196,6 +197,22 @@ void note_refuted(Diagnosis& diagnosis) {
       note += text.data();
     }
     diagnosis.notes.push_back(note);
+  }
+}
+
+// A note for each kind that was worth adding but for surrogates, and that no other round added.
+void note_by_chance(Diagnosis& diagnosis) {
+  std::set<std::string> noted;
+  for (const Effect& effect : diagnosis.model.effects) noted.insert(effect.kind);
+  for (const EffectByChance& each : diagnosis.search.by_chance) {
+    if (!noted.insert(each.effect.kind).second) continue;
+    std::array<char, 160> text{};
+    std::snprintf(
+        text.data(), text.size(),
+        " left out: it lowers the error by %.1f %%, but of surrogates of the residual %.0f "
+        "%% give as much by chance",
+        100.0 * each.fall, 100.0 * each.p);
+    diagnosis.notes.push_back(each.effect.kind + " (" + each.effect.form + ")" + text.data());
   }
 }
 
@@ -313,6 +330,7 @@ void judge(Diagnosis& diagnosis, const Measurement& working, const Signals& sign
   }
   add_sizes(diagnosis, signals);
   note_refuted(diagnosis);
+  note_by_chance(diagnosis);
   std::vector<bool> counts;
   for (const FoundEffect& found : diagnosis.effects) counts.push_back(found.counts);
   diagnosis.carried =

@@ -3,24 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
 
+#include "services/core/diagnosis/detection/detection.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/recordings_out.hpp"
+#include "services/core/diagnosis/surrogate_round.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
 bool has_any_shape(const Trial& trial) {
   return effect_kind(trial.model.effects.back().kind).any_shape();
-}
-
-// Effects of time alone describe one recording and cannot be tested on another.
-bool asks_recordings(const Trial& trial) {
-  const Effect& effect = trial.model.effects.back();
-  return !passes_over_samples(trial) && !effect_kind(effect.kind).time_only(effect);
 }
 
 // Which of them is to be added, if any: the chosen one, unless one of the recordings that were
@@ -34,7 +31,7 @@ std::optional<std::size_t> confirmed(std::vector<Trial>& tried, const HeldOut& c
     const std::size_t chosen = added_of(tried, current, least_fall, candidates, options);
     if (chosen == tried.size()) break;
     const Trial& trial = tried[chosen];
-    if (!recordings.several() || !asks_recordings(trial)) return chosen;
+    if (!recordings.several() || !depends_on_signals(trial)) return chosen;
     if (before.empty()) before = recordings.errors(result.model);
     const std::vector<double> fall = falls(before, recordings.errors(trial.model));
     if (!refuted(fall, options.least_fall)) return chosen;
@@ -81,6 +78,16 @@ bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
 // In any order.
 bool same_effects(const Model& a, const Model& b) {
   return std::ranges::is_permutation(a.effects, b.effects, is_same);
+}
+
+// Those that surrogates test leave `tried`.
+std::vector<Trial> taken_by_chance(std::vector<Trial>& tried) {
+  const auto rest = std::ranges::stable_partition(tried, std::not_fn(is_tested_by_surrogates));
+  std::vector<Trial> taken(std::make_move_iterator(rest.begin()),
+                           std::make_move_iterator(rest.end()));
+  tried.erase(rest.begin(), rest.end());
+  for (Trial& trial : taken) trial.by_chance = true;
+  return taken;
 }
 
 // The forward selection, from the baseline alone or with bursts left out from the start.
@@ -234,6 +241,7 @@ class Forward {
     }
     std::ranges::stable_sort(tried, by_rmse);
     const std::size_t chosen = chosen_of(tried, current.rmse(), options_);
+    if (is_by_chance(tried, chosen, current, judged, from)) return false;
     if (!add(from, current, std::move(tried), chosen, judged, options_.least_fall)) return false;
     result = std::move(from);
     return true;
@@ -284,18 +292,40 @@ class Forward {
         }
       }
     }
+    std::vector<Trial> by_chance;
+    if (chosen && is_by_chance(tried, *chosen, current, judged, result)) {
+      // What surrogates cannot test is left.
+      by_chance = taken_by_chance(tried);
+      chosen =
+          confirmed(tried, current, least_fall, RecordingsOut(judged, blocks_), options_, result);
+    }
     if (chosen && add(result, current, tried, *chosen, judged, least_fall)) return true;
     // Where the list has named another, the one with the least error may pass without the filter.
     if (chosen && *chosen != 0 &&
         is_worth_adding(tried.front(), current, least_fall, tried.size(), options_) &&
+        !is_by_chance(tried, 0, current, judged, result) &&
         add(result, current, tried, 0, judged, least_fall)) {
       return true;
     }
+    std::ranges::move(by_chance, std::back_inserter(tried));
+    std::ranges::stable_sort(tried, by_rmse);
     if (!tried.empty() && std::isfinite(tried.front().rmse)) {
       result.last_tried = std::move(tried);
       result.last_current = current;
     }
     return false;
+  }
+
+  // Eq. DG-94.  @param result  of the rounds before; gets what is refused
+  [[nodiscard]] bool is_by_chance(const std::vector<Trial>& tried, std::size_t chosen,
+                                  const HeldOut& current, const Signals& judged,
+                                  SearchResult& result) const {
+    const double fall = 1.0 - compared(current, tried[chosen].held_out).rmse_ratio;
+    if (fall >= options_.large_fall || !is_tested_by_surrogates(tried[chosen])) return false;
+    const double p = surrogate_p_of(tried, chosen, result.model, judged, settings_);
+    if (p <= kSignificance) return false;
+    result.by_chance.push_back({tried[chosen].model.effects.back(), fall, p});
+    return true;
   }
 
   // Of the model as the verdict would have it.

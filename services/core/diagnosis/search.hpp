@@ -32,6 +32,13 @@ struct RefutedEffect {
   std::vector<double> fall;  ///< [-] of each recording's error, held out whole
 };
 
+/// An effect that the blocks support, but surrogates of the residual give as well.
+struct EffectByChance {
+  Effect effect;
+  double fall = 0.0;  ///< [-] of the held-out error
+  double p = 1.0;     ///< [-] of what it explains, by surrogates, Eq. DG-94
+};
+
 /// Result of the search.
 struct SearchResult {
   Model model;
@@ -40,8 +47,9 @@ struct SearchResult {
   bool reordered = false;              ///< the additions stand in another order than they came in
   bool whitened = false;               ///< judged behind a noise model, Eq. DG-61
   std::vector<RefutedEffect> refuted;  ///< of all rounds
-  std::vector<Trial> last_tried;       ///< after the last addition, best first: all were rejected
-  HeldOut last_current;                ///< what they were compared with
+  std::vector<EffectByChance> by_chance = {};  ///< likewise
+  std::vector<Trial> last_tried;  ///< after the last addition, best first: all were rejected
+  HeldOut last_current;           ///< what they were compared with
 };
 
 /// Forward selection with re-testing, METHOD "Selection": propose, fit jointly, compare on held-out

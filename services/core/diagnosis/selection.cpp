@@ -97,6 +97,11 @@ bool ties_with(const Trial& other, const Trial& best, double current_rmse,
          gain(other) >= options.tied_gain * gain(best);
 }
 
+bool depends_on_signals(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return !passes_over_samples(trial) && !effect_kind(effect.kind).time_only(effect);
+}
+
 std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
                       const SearchOptions& options,
                       const std::function<bool(const Trial&)>& worth_adding) {
@@ -126,6 +131,7 @@ std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
 
 bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
                      std::size_t candidates, const SearchOptions& options) {
+  if (trial.by_chance) return false;
   const Comparison comparison = compared(current, trial.held_out);
   // Bursts lie in few blocks, too few for the signs; that they stand out has been tested already.
   if (passes_over_samples(trial)) return 1.0 - comparison.rmse_ratio > options.large_fall;

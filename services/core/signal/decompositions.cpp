@@ -15,6 +15,10 @@ Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd&
   return Eigen::LDLT<Eigen::MatrixXd>(a).solve(b);
 }
 
+Eigen::MatrixXd solve_symmetric_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return Eigen::LDLT<Eigen::MatrixXd>(a).solve(b);
+}
+
 Eigen::MatrixXd upper_factor(const Eigen::MatrixXd& a) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(a);
   const Eigen::Index rows = std::min(a.rows(), a.cols());

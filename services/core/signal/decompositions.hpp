@@ -13,6 +13,8 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
 
 /// x [n] of A x = b, A [n x n] symmetric: pivoted L D L^T (4.4).
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+/// The same for each column of B.
+Eigen::MatrixXd solve_symmetric_columns(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// R [min(m, n) x n] of A = Q R, A [m x n]: Householder, no pivoting (5.2.2).
 Eigen::MatrixXd upper_factor(const Eigen::MatrixXd& a);

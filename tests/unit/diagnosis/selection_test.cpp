@@ -39,6 +39,16 @@ Trial even(const char* kind, double mean_square, std::size_t numbers) {
   return tried(kind, std::vector<double>(kBlocks, mean_square), numbers);
 }
 
+// Of the chosen and of all the others.
+TEST(SelectionTest, WhatSurrogatesGiveAsWellIsNotWorthAdding) {
+  const Trial better = even("delay", 1.0, 1);
+  const HeldOut current = even("delay", 4.0, 1).held_out;
+  EXPECT_TRUE(is_worth_adding(better, current, 0.005, 1, {}));
+  Trial sut = better;
+  sut.by_chance = true;
+  EXPECT_FALSE(is_worth_adding(sut, current, 0.005, 1, {}));
+}
+
 // 800 samples: ln(1.5) 800 = 324 for the error, ln(800) = 6.7 a number.
 TEST(SelectionTest, AModelThatExplainsMoreEarnsItsNumbers) {
   const std::vector<Trial> sut{even("tone", 1.5, 1), even("drift", 1.0, 9), even("delay", 2.0, 1)};

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 
+#include "services/core/diagnosis/detection/surrogates.hpp"
 #include "services/core/statistics/multiple_testing.hpp"
 
 namespace stillhand::diagnosis {
@@ -34,25 +36,33 @@ std::vector<double> mapped(const std::vector<double>& x, const std::function<dou
 // Questions gathered with their answers.
 class Questions {
  public:
-  explicit Questions(const Screening& screening) : screening_(screening) {}
+  explicit Questions(const Screening& screening)
+      : screening_(screening),
+        gains_(screening.jacobian(), screening.residual(), screening.weight(), screening.blocks()),
+        by_chance_(Eigen::ArrayXd::Zero(kSurrogates)) {}
 
   void ask(const std::string& question, const std::string& about,
            const std::vector<std::string>& channels, const Columns& columns) {
-    const ScreenedGain gain = screening_.gain(columns);
-    answers_.push_back({question, about, gain.share, gain.p, false, channels});
+    const SurrogateShares shares = gains_.shares(screening_.as_added(columns));
+    answers_.push_back({question, about, shares.own, 1.0, false, channels});
+    by_chance_ = by_chance_.max(shares.surrogates);
   }
   void add(const std::string& about, const LineGroup& lines) {
-    if (!lines.empty()) answers_.push_back({kDistortion, about, lines.share, lines.p, false, {}});
+    if (!lines.empty()) lines_.push_back({kDistortion, about, lines.share, lines.p, false, {}});
   }
 
   [[nodiscard]] std::vector<Detection> answers() const {
-    std::vector<double> p;
-    for (const Detection& each : answers_) p.push_back(each.p);
-    const std::vector<double> corrected = statistics::holm_adjusted(p);
     std::vector<Detection> all = answers_;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      all[i].p = corrected[i];
-      all[i].found = all[i].share > kLeastShare && corrected[i] < kSignificance;
+    for (Detection& each : all) each.p = surrogate_p(each.share, by_chance_);
+    std::vector<double> p;
+    std::ranges::transform(lines_, std::back_inserter(p), &Detection::p);
+    const std::vector<double> corrected = statistics::holm_adjusted(p);
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      all.push_back(lines_[i]);
+      all.back().p = corrected[i];
+    }
+    for (Detection& each : all) {
+      each.found = each.share > kLeastShare && each.p <= kSignificance;
     }
     std::ranges::stable_sort(all, std::ranges::greater(), &Detection::share);
     return all;
@@ -60,7 +70,10 @@ class Questions {
 
  private:
   const Screening& screening_;
+  const SurrogateGains gains_;
+  Eigen::ArrayXd by_chance_;  ///< largest share of any question, of each surrogate
   std::vector<Detection> answers_;
+  std::vector<Detection> lines_;  ///< with a test of their own
 };
 
 void ask_about_signals(const Screening& screening, Questions& questions) {
@@ -162,8 +175,7 @@ Spread spread_of(const Screening& screening) {
   const Blocks& blocks = screening.blocks();
   Spread result;
   for (std::size_t b = 0; b < blocks.count; ++b) {
-    const auto first = static_cast<Eigen::Index>(b * blocks.length);
-    const Eigen::Index rows = std::min(static_cast<Eigen::Index>(blocks.length), r.size() - first);
+    const auto [first, rows] = rows_of(blocks, b, r.size());
     double weight = 0.0;
     for (Eigen::Index n = first; n < first + rows; ++n) {
       weight += screening.weight()[static_cast<std::size_t>(n)];

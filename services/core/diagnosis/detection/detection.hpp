@@ -11,9 +11,10 @@
 
 namespace stillhand::diagnosis {
 
-/// A question is answered yes above this share [-] of the squared error (3 % of its root),
+/// A question is answered yes above this share [-] of the squared error (3 % of its root: less is
+/// not worth a question),
 inline constexpr double kLeastShare = 0.06;
-/// and below this probability [-] by chance, corrected.
+/// and up to this probability [-] by chance, of all questions together, Eq. DG-93.
 inline constexpr double kSignificance = 0.01;
 /// Question about a multisine's detection lines; its `channel` says which lines.
 inline constexpr const char* kDistortion = "distortion at";
@@ -23,7 +24,8 @@ struct Detection {
   std::string question;  ///< for example "linear in", "square of", "gain over time"
   std::string channel;   ///< what it was asked about; may be empty
   double share = 0.0;    ///< [-] of the squared error that it explains, held out
-  double p = 1.0;        ///< [-] Holm's correction for all questions applied
+  double p = 1.0;        ///< [-] of such a share in any answer by chance: of the surrogates, or, of
+                         ///< lines, after Holm
   bool found = false;    ///< share and p say that something is there
   std::vector<std::string> channels = {};  ///< the measured ones among what it was asked about
 };
@@ -53,8 +55,9 @@ struct DetectionResult {
 
 /// Puts every question to a residual: each signal at several lags, powers and products of signals
 /// and of the body's output, its past and sign, gains and offsets over time.  Each is judged on
-/// held-out blocks next to the model, whose numbers are fitted again; p after Holm.  Where the
-/// input is periodic, the lines that it does not excite are tested as well (Eq. DG-44).
+/// held-out blocks next to the model, whose numbers are fitted again, and asked of surrogates of
+/// the residual as well (Eq. DG-93).  Where the input is periodic, the lines that it does not
+/// excite are tested too (Eq. DG-44).
 /// @param excitation  of the same signals
 DetectionResult detected(const Screening& screening,
                          const std::optional<PeriodicExcitation>& excitation);

@@ -3,32 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "services/core/diagnosis/detection/surrogates.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::diagnosis {
-namespace {
-
-// The rows that weigh, one after the other in a circle.
-Eigen::VectorXd moved_by(double part, bool backwards, const Eigen::VectorXd& residual,
-                         const std::vector<double>& weight) {
-  std::vector<Eigen::Index> rows;
-  for (Eigen::Index n = 0; n < residual.size(); ++n) {
-    if (weight[static_cast<std::size_t>(n)] > 0.0) rows.push_back(n);
-  }
-  const auto shift = static_cast<std::size_t>(part * static_cast<double>(rows.size()));
-  Eigen::VectorXd other = Eigen::VectorXd::Zero(residual.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::size_t from = (i + shift) % rows.size();
-    other[rows[i]] = residual[rows[backwards ? rows.size() - 1 - from : from]];
-  }
-  return other;
-}
-
-}  // namespace
-
 MovedResiduals::MovedResiduals(const Model& model, const Signals& signals, const Blocks& blocks,
                                const Eigen::MatrixXd& columns, std::size_t count)
     : blocks_(blocks), columns_(columns.cols()), residuals_(static_cast<Eigen::Index>(count)) {
@@ -45,7 +25,7 @@ MovedResiduals::MovedResiduals(const Model& model, const Signals& signals, const
   for (std::size_t i = 0; i < count; ++i) {
     const double part = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     all.col(own_ + columns_ + static_cast<Eigen::Index>(i)) =
-        moved_by(part, i % 2 == 1, line.residual, line.run.weight);
+        moved_in_time(line.residual, line.run.weight, part, i % 2 == 1);
   }
   grams_ = grams_of(all.leftCols(all.cols() - 1), all.col(all.cols() - 1), line.run.weight, blocks);
 }

@@ -19,6 +19,11 @@ constexpr std::size_t kFewestSamples = 5;
 
 }  // namespace
 
+BlockRows rows_of(const Blocks& blocks, std::size_t block, std::ptrdiff_t samples) noexcept {
+  const auto first = static_cast<std::ptrdiff_t>(block * blocks.length);
+  return {first, std::min(static_cast<std::ptrdiff_t>(blocks.length), samples - first)};
+}
+
 Blocks make_blocks(const Signals& signals) {
   const auto shortest =
       std::max(kFewestSamples, static_cast<std::size_t>(kShortestBlock_s * signals.rate_hz()));

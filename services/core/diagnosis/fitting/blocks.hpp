@@ -21,6 +21,14 @@ struct Blocks {
   }
 };
 
+/// Rows of one block.
+struct BlockRows {
+  std::ptrdiff_t first;
+  std::ptrdiff_t count;
+};
+/// @param samples  of the record: the last block may have fewer than the others
+BlockRows rows_of(const Blocks& blocks, std::size_t block, std::ptrdiff_t samples) noexcept;
+
 /// About 30 blocks of at least 2 s, 5 folds.  @throws stillhand::ConfigError for a record of fewer
 /// than 10 blocks of 5 samples.
 Blocks make_blocks(const Signals& signals);

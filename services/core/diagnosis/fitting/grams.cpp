@@ -20,9 +20,7 @@ Grams grams_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
   const Eigen::Index columns = jacobian.cols();
   Grams grams;
   for (std::size_t b = 0; b < blocks.count; ++b) {
-    const auto first = static_cast<Eigen::Index>(b * blocks.length);
-    const Eigen::Index rows =
-        std::min(static_cast<Eigen::Index>(blocks.length), residual.size() - first);
+    const auto [first, rows] = rows_of(blocks, b, residual.size());
     ColumnPointers pointers;
     append_columns(jacobian, first, pointers);
     pointers.push_back(residual.data() + first);

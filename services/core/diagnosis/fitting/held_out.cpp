@@ -23,6 +23,15 @@ double sum_of(const std::vector<double>& values) {
 
 double HeldOut::rmse() const { return std::sqrt(sum_of(squares) / std::max(sum_of(weights), 1.0)); }
 
+Eigen::MatrixXd held_out_steps(const Eigen::MatrixXd& training,
+                               const Eigen::MatrixXd& with_residuals) {
+  const Eigen::VectorXd scale = training.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd normal = scale.asDiagonal() * training * scale.asDiagonal();
+  normal.diagonal().array() += kDeviationRidge;
+  return scale.asDiagonal() *
+         signal::solve_symmetric_columns(normal, scale.asDiagonal() * with_residuals);
+}
+
 HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks) {
   HeldOut result;
   result.finite = true;
@@ -30,15 +39,9 @@ HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks) {
   result.squares.resize(grams.blocks.size());
   const Eigen::Index count = grams.blocks.front().rows() - 1;
   for (std::size_t fold = 0; fold < blocks.folds; ++fold) {
-    Eigen::MatrixXd training = grams.total(blocks, static_cast<int>(fold));
-    const Eigen::VectorXd scale =
-        training.diagonal().head(count).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd normal =
-        scale.asDiagonal() * training.topLeftCorner(count, count) * scale.asDiagonal();
-    normal.diagonal().array() += kDeviationRidge;
+    const Eigen::MatrixXd training = grams.total(blocks, static_cast<int>(fold));
     const Eigen::VectorXd step =
-        scale.asDiagonal() *
-        signal::solve_symmetric(normal, scale.asDiagonal() * training.col(count).head(count));
+        held_out_steps(training.topLeftCorner(count, count), training.col(count).head(count));
     for (std::size_t b = 0; b < grams.blocks.size(); ++b) {
       if (blocks.fold_of(b) != fold) continue;
       const Eigen::MatrixXd& gram = grams.blocks[b];

@@ -19,6 +19,12 @@ struct HeldOut {
 /// Of squared errors or of weights, over the blocks.
 double sum_of(const std::vector<double>& values);
 
+/// By how much a fit to the blocks outside of the fold changes the numbers.
+/// @param training  products of the columns with themselves over these blocks [n x n]
+/// @param with_residuals  of the columns with residuals [n x any]
+/// @return one column a residual
+Eigen::MatrixXd held_out_steps(const Eigen::MatrixXd& training,
+                               const Eigen::MatrixXd& with_residuals);
 /// Every fold predicted by a fit to the others, from one linearisation at the fit to all, Eq.
 /// DG-12.
 HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks);

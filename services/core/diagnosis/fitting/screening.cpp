@@ -33,11 +33,9 @@ std::vector<Proposal> Screening::known(std::string_view kind) const {
   return of_kind;
 }
 
-ScreenedGain Screening::gain(const Columns& columns) const {
-  const auto extra = static_cast<Eigen::Index>(columns.size());
-  const Eigen::Index own = line_.jacobian.cols();
-  Eigen::MatrixXd more(line_.residual.size(), extra);
-  for (Eigen::Index c = 0; c < extra; ++c) {
+Eigen::MatrixXd Screening::as_added(const Columns& columns) const {
+  Eigen::MatrixXd more(line_.residual.size(), std::ssize(columns));
+  for (Eigen::Index c = 0; c < more.cols(); ++c) {
     const std::vector<double>& column = columns[static_cast<std::size_t>(c)];
     for (std::size_t n = 0; n < column.size(); ++n) {
       more(static_cast<Eigen::Index>(n), c) =
@@ -46,17 +44,22 @@ ScreenedGain Screening::gain(const Columns& columns) const {
   }
   initial_.remove_from(more);
   signals_.whiten(more, line_.run.weight);
+  return more;
+}
+
+ScreenedGain Screening::gain(const Columns& columns) const {
+  const Eigen::Index own = line_.jacobian.cols();
+  const Eigen::Index size = own + std::ssize(columns);
+  const Eigen::MatrixXd more = as_added(columns);
   Grams grams;
   grams.weights = grams_.weights;
   for (std::size_t b = 0; b < blocks_.count; ++b) {
-    const auto first = static_cast<Eigen::Index>(b * blocks_.length);
-    const Eigen::Index rows =
-        std::min(static_cast<Eigen::Index>(blocks_.length), more.rows() - first);
+    const auto [first, rows] = rows_of(blocks_, b, more.rows());
     ColumnPointers pointers;
     append_columns(line_.jacobian, first, pointers);
     append_columns(more, first, pointers);
     pointers.push_back(line_.residual.data() + first);
-    Eigen::MatrixXd gram(own + extra + 1, own + extra + 1);
+    Eigen::MatrixXd gram(size + 1, size + 1);
     gram.topLeftCorner(own, own) = grams_.blocks[b].topLeftCorner(own, own);
     write_products(pointers, static_cast<std::size_t>(rows), own, gram);
     grams.blocks.push_back(std::move(gram));
@@ -70,7 +73,6 @@ ScreenedGain Screening::gain(const Columns& columns) const {
   }
   if (with.finite) result.p = statistics::signed_rank_p(differences);
   const Eigen::MatrixXd total = grams.total(blocks_);
-  const Eigen::Index size = own + extra;
   const Eigen::VectorXd scale =
       total.diagonal().head(size).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd normal =
@@ -95,18 +97,20 @@ Columns Screening::through_body(const std::vector<double>& column) const {
   return columns;
 }
 
-std::pair<Effect, double> Screening::with_coefficients(Effect effect) const {
+Columns Screening::term_columns(const Effect& effect) const {
   const EffectKind& kind = effect_kind(effect.kind);
   Columns columns;
   kind.terms(effect, signals_, line_.run.body, columns);
-  if (kind.through_body(effect)) {
-    Columns passed;
-    for (const auto& column : columns) {
-      for (auto& each : through_body(column)) passed.push_back(std::move(each));
-    }
-    columns = std::move(passed);
+  if (!kind.through_body(effect)) return columns;
+  Columns passed;
+  for (const auto& column : columns) {
+    for (auto& each : through_body(column)) passed.push_back(std::move(each));
   }
-  const ScreenedGain found = gain(columns);
+  return passed;
+}
+
+std::pair<Effect, double> Screening::with_coefficients(Effect effect) const {
+  const ScreenedGain found = gain(term_columns(effect));
   effect.coefficients = found.coefficients;
   return {std::move(effect), found.share};
 }

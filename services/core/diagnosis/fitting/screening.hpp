@@ -39,6 +39,8 @@ class Screening {
   [[nodiscard]] std::vector<Proposal> known(std::string_view kind) const;
   /// Output - prediction, weighted, initial states taken out.
   [[nodiscard]] const Eigen::VectorXd& residual() const noexcept { return line_.residual; }
+  /// Of the residual by the model's numbers, as in Linearisation.
+  [[nodiscard]] const Eigen::MatrixXd& jacobian() const noexcept { return line_.jacobian; }
   /// y_b, the body's output.
   [[nodiscard]] const std::vector<double>& body_output() const noexcept { return line_.run.body; }
   [[nodiscard]] const std::vector<double>& prediction() const noexcept {
@@ -48,10 +50,15 @@ class Screening {
   /// Root mean square of the residual.
   [[nodiscard]] double rmse() const noexcept { return rmse_; }
 
+  /// Columns as they add to the prediction before the output's map, as the residual is: weighted,
+  /// initial states taken out [samples x columns].
+  [[nodiscard]] Eigen::MatrixXd as_added(const Columns& columns) const;
   /// @param columns  as they add to the prediction before the output's map
   [[nodiscard]] ScreenedGain gain(const Columns& columns) const;
   /// A column's passages through the body's poles, order + 1 of them (difference basis).
   [[nodiscard]] Columns through_body(const std::vector<double>& column) const;
+  /// Columns of an effect, kTerm only, through the body's poles where it passes them.
+  [[nodiscard]] Columns term_columns(const Effect& effect) const;
   /// A copy of the effect with coefficients as screened, and its gain; kTerm only.
   [[nodiscard]] std::pair<Effect, double> with_coefficients(Effect effect) const;
 

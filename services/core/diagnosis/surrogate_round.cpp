@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/surrogate_round.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "services/core/diagnosis/detection/surrogates.hpp"
+#include "services/core/diagnosis/fitting/screening.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+// A term by its columns, each with a factor of its own; others by what they add to the prediction.
+Eigen::MatrixXd added_by(const Trial& trial, const Screening& screening) {
+  const Effect& effect = trial.model.effects.back();
+  if (effect_kind(effect.kind).stage(effect) == Stage::kTerm) {
+    return screening.as_added(screening.term_columns(effect));
+  }
+  FreeRun run;
+  return screening.residual() - residual_of(trial.model, screening.signals(), run);
+}
+
+}  // namespace
+
+bool is_tested_by_surrogates(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return depends_on_signals(trial) && !effect_kind(effect.kind).shows_in_rows(effect);
+}
+
+double surrogate_p_of(const std::vector<Trial>& tried, std::size_t chosen, const Model& current,
+                      const Signals& judged, const RoundSettings& settings) {
+  const Signals part = screened_part(judged);
+  const Blocks blocks = part.size() == judged.size() ? settings.blocks : make_blocks(part);
+  const Screening screening(current, part, blocks, settings.impulse_response);
+  const SurrogateGains gains(screening.jacobian(), screening.residual(), screening.weight(),
+                             blocks);
+  std::vector<SurrogateShares> shares(tried.size());
+  settings.for_each(tried.size(), [&](std::size_t i) {
+    if (!std::isfinite(tried[i].rmse) || !is_tested_by_surrogates(tried[i])) return;
+    shares[i] = gains.shares(added_by(tried[i], screening));
+  });
+  Eigen::ArrayXd by_chance = Eigen::ArrayXd::Zero(kSurrogates);
+  for (const SurrogateShares& each : shares) {
+    if (each.surrogates.size() > 0) by_chance = by_chance.max(each.surrogates);
+  }
+  return surrogate_p(shares[chosen].own, by_chance);
+}
+
+}  // namespace stillhand::diagnosis

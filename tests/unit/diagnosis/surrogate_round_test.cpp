@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/surrogate_round.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "services/core/diagnosis/detection/surrogates.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis::surrogate_round_test {
+
+constexpr std::size_t kCount = 3000;
+
+// A round on a static model, so that it takes little: y = 2 u + of_v v + tone + noise of 0.1.
+struct Round {
+  Round(double of_v, double of_tone)
+      : signals(measurement(of_v, of_tone), {"u"}, "y"),
+        blocks(make_blocks(signals)),
+        baseline(fit_baseline(signals, blocks, 0)),
+        impulse_response(fit_impulse_response(signals)),
+        settings{blocks, impulse_response, baseline.order, options, for_each} {
+    const double rmse = held_out(baseline.model, signals, blocks).rmse();
+    tried =
+        finished_trials(screened_trials(baseline.model, rmse, signals, settings, Shapes::kNamed),
+                        rmse, signals, settings);
+  }
+
+  [[nodiscard]] static Measurement measurement(double of_v, double of_tone) {
+    const auto u = made::ride(kCount, 1);
+    const auto v = made::ride(kCount, 2);
+    std::vector<double> y = made::white(kCount, 4);
+    for (std::size_t n = 0; n < kCount; ++n) {
+      const double t = static_cast<double>(n) / made::kRateHz;
+      y[n] = 0.1 * y[n] + 2.0 * u[n] + of_v * v[n] +
+             of_tone * std::sin(2.0 * std::numbers::pi * 5.0 * t);
+    }
+    return made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
+  }
+
+  // Of the best that surrogates test.
+  [[nodiscard]] double p() const {
+    const auto best = std::ranges::find_if(tried, is_tested_by_surrogates);
+    return surrogate_p_of(tried, static_cast<std::size_t>(best - tried.begin()), baseline.model,
+                          signals, settings);
+  }
+
+  SearchOptions options;
+  ForEach for_each = in_order;
+  Signals signals;
+  Blocks blocks;
+  Baseline baseline;
+  ImpulseResponse impulse_response;
+  RoundSettings settings;
+  std::vector<Trial> tried;
+};
+
+TEST(SurrogateRoundTest, WhatAChannelExplainsNoSurrogateGives) {
+  EXPECT_EQ(Round(0.03, 0.0).p(), 1.0 / (1.0 + kSurrogates));
+}
+
+// One like the others: p is spread evenly, so that the mean of a few is far above 1 %.
+TEST(SurrogateRoundTest, OfNoiseAloneSurrogatesGiveAsMuch) { EXPECT_GT(Round(0.0, 0.0).p(), 0.05); }
+
+// A surrogate keeps it, and what is left is noise.
+TEST(SurrogateRoundTest, WhatTimeAloneExplainsIsNotAsked) {
+  const Round round(0.0, 0.3);
+  EXPECT_EQ(round.tried.front().model.effects.front().kind, "tone");
+  EXPECT_FALSE(is_tested_by_surrogates(round.tried.front()));
+  EXPECT_GT(round.p(), 0.05);
+}
+
+}  // namespace stillhand::diagnosis::surrogate_round_test

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/core/diagnosis/detection/surrogates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis::surrogates_test {
+
+constexpr std::size_t kCount = 6000;
+constexpr std::size_t kFew = 8;
+
+Eigen::VectorXd vector_of(const std::vector<double>& x) {
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
+}
+
+double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return a.dot(b) / (a.norm() * b.norm());
+}
+
+// [-] from each sample to the next: the colour.
+double of_neighbours(const Eigen::VectorXd& x) {
+  return correlation(x.head(x.size() - 1), x.tail(x.size() - 1));
+}
+
+TEST(SurrogatesTest, EachHasThePowerAndTheColourAndIsAnotherNoise) {
+  const Eigen::VectorXd residual =
+      vector_of(made::answer({1.0}, {1.0, -0.8}, made::white(kCount, 1)));
+  const Eigen::MatrixXd sut = surrogates(residual, std::vector<double>(kCount, 1.0), kFew);
+  ASSERT_EQ(sut.cols(), static_cast<Eigen::Index>(kFew));
+  for (Eigen::Index i = 0; i < sut.cols(); ++i) {
+    SCOPED_TRACE(i);
+    EXPECT_NEAR(sut.col(i).norm(), residual.norm(), 1e-6 * residual.norm());
+    EXPECT_NEAR(of_neighbours(sut.col(i)), 0.8, 0.03);
+    // The standard deviation of a correlation of such noises is sqrt(4.6/6000) = 0.028.
+    EXPECT_LT(std::abs(correlation(sut.col(i), residual)), 0.11);
+    for (Eigen::Index j = 0; j < i; ++j) {
+      EXPECT_LT(std::abs(correlation(sut.col(i), sut.col(j))), 0.11) << j;
+    }
+  }
+}
+
+// A burst stays one in those that are moved, every second one; other phases spread it.
+TEST(SurrogatesTest, WhatIsMovedInTimeKeepsItsBursts) {
+  std::vector<double> burst = made::white(kCount, 2);
+  for (std::size_t n = 0; n < 50; ++n) burst[n + 1000] *= 30.0;
+  const Eigen::VectorXd residual = vector_of(burst);
+  const Eigen::MatrixXd sut = surrogates(residual, std::vector<double>(kCount, 1.0), kFew);
+  for (Eigen::Index i = 0; i < sut.cols(); ++i) {
+    const double largest = sut.col(i).cwiseAbs().maxCoeff();
+    if (i % 2 == 0) {
+      EXPECT_EQ(largest, residual.cwiseAbs().maxCoeff()) << i;
+      EXPECT_NE(sut(1000, i), residual[1000]) << i;
+    } else {
+      EXPECT_LT(largest, 0.5 * residual.cwiseAbs().maxCoeff()) << i;
+    }
+  }
+}
+
+TEST(SurrogatesTest, SamplesThatWeighNothingStayZero) {
+  std::vector<double> weight(kCount, 1.0);
+  std::fill_n(weight.begin() + 100, 500, 0.0);
+  Eigen::VectorXd residual = vector_of(made::white(kCount, 3));
+  residual.segment(100, 500).setZero();
+  const Eigen::MatrixXd sut = surrogates(residual, weight, kFew);
+  EXPECT_EQ(sut.middleRows(100, 500).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_NEAR(sut.col(1).norm(), residual.norm(), 1e-6 * residual.norm());
+}
+
+TEST(SurrogatesTest, ProbabilityCountsTheRecordItself) {
+  const Eigen::ArrayXd of_surrogates = Eigen::ArrayXd::LinSpaced(99, 0.0, 0.98);
+  EXPECT_DOUBLE_EQ(surrogate_p(1.0, of_surrogates), 0.01);
+  EXPECT_DOUBLE_EQ(surrogate_p(0.485, of_surrogates), 0.51);
+  EXPECT_DOUBLE_EQ(surrogate_p(0.0, of_surrogates), 1.0);
+}
+
+// y = body(u) + 0.3 v + noise; v is no channel that the model knows.
+Measurement with_another_channel() {
+  const auto u = made::ride(kCount, 1);
+  const auto v = made::ride(kCount, 2);
+  const auto noise = made::white(kCount, 3);
+  const Body body = made::two_pole_body();
+  auto y = made::answer(body.numerators[0], body.denominator, u);
+  for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.3 * v[n] + 0.05 * noise[n];
+  return made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
+}
+
+SurrogateShares shares_of(const made::Studied& of, const Columns& columns) {
+  const Screening& screening = of.screening;
+  return SurrogateGains(screening.jacobian(), screening.residual(), screening.weight(), of.blocks)
+      .shares(screening.as_added(columns));
+}
+
+TEST(SurrogatesTest, EachHasTheShareOfAResidualThatIsIt) {
+  const made::Studied of(with_another_channel(), 2);
+  const Columns columns{of.signals.at("v").values, made::white(kCount, 7)};
+  const SurrogateShares sut = shares_of(of, columns);
+  EXPECT_NEAR(sut.own, of.screening.gain(columns).share, 1e-9);
+  const Eigen::MatrixXd all = surrogates(of.screening.residual(), of.screening.weight(),
+                                         static_cast<std::size_t>(kSurrogates));
+  for (Eigen::Index i = 0; i < kSurrogates; ++i) {
+    std::vector<double> output = of.screening.prediction();
+    for (std::size_t n = 0; n < output.size(); ++n) {
+      output[n] += all(static_cast<Eigen::Index>(n), i);
+    }
+    const Signals with_it = of.signals.with_output(output);
+    const Screening screening(of.baseline.model, with_it, of.blocks, of.impulse_response);
+    // The initial state has been taken out of the residual there, of some ten samples.
+    EXPECT_NEAR(sut.surrogates[i], screening.gain(columns).share, 1e-3) << i;
+  }
+}
+
+TEST(SurrogatesTest, WhatAChannelExplainsItDoesNotExplainOfSurrogates) {
+  const made::Studied of(with_another_channel(), 2);
+  const SurrogateShares sut = shares_of(of, {of.signals.at("v").values});
+  EXPECT_GT(sut.own, 0.9);
+  EXPECT_LT(sut.surrogates.maxCoeff(), 0.02);
+}
+
+}  // namespace stillhand::diagnosis::surrogates_test
