@@ -70,6 +70,7 @@ Cell outcome_of(const Step& step, std::size_t i) {
   if (i == step.chosen) return {"added", Emphasis::kGood};
   const diagnosis::Trial& trial = step.tried[i];
   if (!trial.fitted) return {"not fitted: nothing to gain", Emphasis::kFaint};
+  if (diagnosis::is_by_chance(trial)) return {"by chance", Emphasis::kFaint};
   const bool tied =
       std::isfinite(trial.rmse) && step.chosen < step.tried.size() &&
       diagnosis::ties_with(trial, step.tried[step.chosen], step.before.rmse(), step.options);
@@ -229,7 +230,10 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
         percent(found.options.search.least_fall, 0) + " and p is below " +
         short_number(found.options.search.significance) +
         " divided by the number of candidates (not divided if the error falls by more than " +
-        percent(found.options.search.large_fall, 0) + "). At most " +
+        percent(found.options.search.large_fall, 0) +
+        "). By chance: copies of what the model leaves, moved in time or with other phases, give "
+        "as "
+        "much. At most " +
         std::to_string(found.options.search.most_effects) + " effects are added.";
     tables.push_back(tried_table(
         found, {found.search.last_current, last, last.size(), found.options.search}, caption));
@@ -271,9 +275,11 @@ Table detection_table(const Diagnosis& found) {
   Table table;
   table.caption =
       "Questions to the residual. Each adds columns to the model, and the model is fitted again. "
-      "Share: the part of the residual's power that the columns explain on held-out blocks. p: the "
-      "probability of that by chance, corrected after Holm for all " +
-      std::to_string(found.before.detections.size()) + " questions.";
+      "Share: the part of the residual's power that the columns explain on held-out blocks. p: how "
+      "many of " +
+      std::to_string(diagnosis::kSurrogates) +
+      " surrogates of the residual, which are moved in time or have other phases, answer any of "
+      "the questions with as large a share, and the residual itself; of lines a test of their own.";
   const bool both = !found.effects.empty();
   table.header = {"question", "about", "share", "p", "found"};
   table.align = {Align::kLeft, Align::kLeft, Align::kRight, Align::kRight, Align::kLeft};

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
-#include <set>
 
 #include "services/core/diagnosis/effect_sizes.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
@@ -200,18 +199,22 @@ void note_refuted(Diagnosis& diagnosis) {
   }
 }
 
-// A note for each kind that was worth adding but for surrogates, and that no other round added.
+// A note for each that was worth adding but for surrogates, and that no other round added.
 void note_by_chance(Diagnosis& diagnosis) {
-  std::set<std::string> noted;
-  for (const Effect& effect : diagnosis.model.effects) noted.insert(effect.kind);
+  std::vector<Effect> noted = diagnosis.model.effects;
   for (const EffectByChance& each : diagnosis.search.by_chance) {
-    if (!noted.insert(each.effect.kind).second) continue;
-    std::array<char, 160> text{};
-    std::snprintf(
-        text.data(), text.size(),
-        " left out: it lowers the error by %.1f %%, but of surrogates of the residual %.0f "
-        "%% give as much by chance",
-        100.0 * each.fall, 100.0 * each.p);
+    const auto is_alike = [&](const Effect& other) {
+      return other.kind == each.effect.kind && other.form == each.effect.form &&
+             other.channels == each.effect.channels;
+    };
+    if (std::ranges::any_of(noted, is_alike)) continue;
+    noted.push_back(each.effect);
+    const double reached = each.p * (1.0 + kSurrogates) - 1.0;
+    std::array<char, 200> text{};
+    std::snprintf(text.data(), text.size(),
+                  " left out: it lowers the error by %.1f %%, but in %.0f of %d copies of what the "
+                  "model leaves, moved in time or with other phases, something explains as much",
+                  100.0 * each.fall, reached, static_cast<int>(kSurrogates));
     diagnosis.notes.push_back(each.effect.kind + " (" + each.effect.form + ")" + text.data());
   }
 }

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
 
-#include "services/core/diagnosis/detection/detection.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/recordings_out.hpp"
 #include "services/core/diagnosis/surrogate_round.hpp"
@@ -20,25 +18,10 @@ bool has_any_shape(const Trial& trial) {
   return effect_kind(trial.model.effects.back().kind).any_shape();
 }
 
-// Which of them is to be added, if any: the chosen one, unless one of the recordings that were
-// joined refutes it; then the next.  Those that are refuted leave `tried`.
-std::optional<std::size_t> confirmed(std::vector<Trial>& tried, const HeldOut& current,
-                                     double least_fall, const RecordingsOut& recordings,
-                                     const SearchOptions& options, SearchResult& result) {
-  const std::size_t candidates = tried.size();
-  std::vector<double> before;
-  while (!tried.empty() && std::isfinite(tried.front().rmse)) {
-    const std::size_t chosen = added_of(tried, current, least_fall, candidates, options);
-    if (chosen == tried.size()) break;
-    const Trial& trial = tried[chosen];
-    if (!recordings.several() || !depends_on_signals(trial)) return chosen;
-    if (before.empty()) before = recordings.errors(result.model);
-    const std::vector<double> fall = falls(before, recordings.errors(trial.model));
-    if (!refuted(fall, options.least_fall)) return chosen;
-    result.refuted.push_back({trial.model.effects.back(), fall});
-    tried.erase(tried.begin() + static_cast<std::ptrdiff_t>(chosen));
-  }
-  return std::nullopt;
+// Effects of time alone describe one recording and cannot be tested on another.
+bool asks_recordings(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return !passes_over_samples(trial) && !effect_kind(effect.kind).time_only(effect);
 }
 
 // Drops effects that the later ones have made idle.  True when one left.  Of a long record one that
@@ -78,16 +61,6 @@ bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
 // In any order.
 bool same_effects(const Model& a, const Model& b) {
   return std::ranges::is_permutation(a.effects, b.effects, is_same);
-}
-
-// Those that surrogates test leave `tried`.
-std::vector<Trial> taken_by_chance(std::vector<Trial>& tried) {
-  const auto rest = std::ranges::stable_partition(tried, std::not_fn(is_tested_by_surrogates));
-  std::vector<Trial> taken(std::make_move_iterator(rest.begin()),
-                           std::make_move_iterator(rest.end()));
-  tried.erase(rest.begin(), rest.end());
-  for (Trial& trial : taken) trial.by_chance = true;
-  return taken;
 }
 
 // The forward selection, from the baseline alone or with bursts left out from the start.
@@ -172,8 +145,11 @@ class Forward {
         judged = std::move(whitened);
       }
     }
-    if (behind && extended_as_judged(*behind, judged, with_own_bodies(screened.trials), result)) {
-      return true;
+    if (behind) {
+      if (extended_as_judged(*behind, judged, with_own_bodies(screened.trials), result)) {
+        return true;
+      }
+      result.by_chance = behind->by_chance;
     }
     if (extend_by_one(result, current,
                       finished_trials(std::move(screened), current.rmse(), signals_, settings_),
@@ -229,8 +205,8 @@ class Forward {
     if (options_.most_effects == 0 || !from.additions.empty()) return false;
     const HeldOut current = held_out(from.model, judged, blocks_);
     std::vector<Trial> tried = free_forms(from.model, current, judged);
-    if (!confirmed(tried, current, options_.least_fall, RecordingsOut(judged, blocks_), options_,
-                   from)) {
+    if (!confirmed(tried, current, options_.least_fall, judged, from)) {
+      result.by_chance = std::move(from.by_chance);
       return false;
     }
     for (const Trial& named : from.last_tried) {
@@ -241,7 +217,6 @@ class Forward {
     }
     std::ranges::stable_sort(tried, by_rmse);
     const std::size_t chosen = chosen_of(tried, current.rmse(), options_);
-    if (is_by_chance(tried, chosen, current, judged, from)) return false;
     if (!add(from, current, std::move(tried), chosen, judged, options_.least_fall)) return false;
     result = std::move(from);
     return true;
@@ -266,8 +241,7 @@ class Forward {
         result.additions.empty() ? options_.first_least_fall : options_.least_fall;
     auto chosen = result.additions.size() == options_.most_effects
                       ? std::nullopt
-                      : confirmed(tried, current, least_fall, RecordingsOut(judged, blocks_),
-                                  options_, result);
+                      : confirmed(tried, current, least_fall, judged, result);
     if (chosen && result.additions.empty()) {
       // A kind that fits a part of a shape, or bursts, which explain nothing, may hide it.
       const Trial& named = tried[*chosen];
@@ -280,8 +254,7 @@ class Forward {
         std::ranges::stable_sort(shapes, by_rmse);
       }
       if (!shapes.empty() && shapes.front().rmse < clearly_less) {
-        const auto shape = confirmed(shapes, current, options_.least_fall,
-                                     RecordingsOut(judged, blocks_), options_, result);
+        const auto shape = confirmed(shapes, current, options_.least_fall, judged, result);
         if (shape && shapes[*shape].rmse < clearly_less) {
           // Of a law with a curve's linear parts the named ones still are the rivals.
           const double error = shapes[*shape].rmse;
@@ -292,23 +265,14 @@ class Forward {
         }
       }
     }
-    std::vector<Trial> by_chance;
-    if (chosen && is_by_chance(tried, *chosen, current, judged, result)) {
-      // What surrogates cannot test is left.
-      by_chance = taken_by_chance(tried);
-      chosen =
-          confirmed(tried, current, least_fall, RecordingsOut(judged, blocks_), options_, result);
-    }
     if (chosen && add(result, current, tried, *chosen, judged, least_fall)) return true;
     // Where the list has named another, the one with the least error may pass without the filter.
     if (chosen && *chosen != 0 &&
         is_worth_adding(tried.front(), current, least_fall, tried.size(), options_) &&
-        !is_by_chance(tried, 0, current, judged, result) &&
+        !is_refused_by_surrogates(tried, 0, current, judged, result) &&
         add(result, current, tried, 0, judged, least_fall)) {
       return true;
     }
-    std::ranges::move(by_chance, std::back_inserter(tried));
-    std::ranges::stable_sort(tried, by_rmse);
     if (!tried.empty() && std::isfinite(tried.front().rmse)) {
       result.last_tried = std::move(tried);
       result.last_current = current;
@@ -316,15 +280,50 @@ class Forward {
     return false;
   }
 
-  // Eq. DG-94.  @param result  of the rounds before; gets what is refused
-  [[nodiscard]] bool is_by_chance(const std::vector<Trial>& tried, std::size_t chosen,
-                                  const HeldOut& current, const Signals& judged,
-                                  SearchResult& result) const {
-    const double fall = 1.0 - compared(current, tried[chosen].held_out).rmse_ratio;
-    if (fall >= options_.large_fall || !is_tested_by_surrogates(tried[chosen])) return false;
-    const double p = surrogate_p_of(tried, chosen, result.model, judged, settings_);
-    if (p <= kSignificance) return false;
-    result.by_chance.push_back({tried[chosen].model.effects.back(), fall, p});
+  // Which of them is to be added, if any: the chosen one, unless surrogates of the residual give as
+  // much, or one of the recordings that were joined refutes it; then the next.  Those that are
+  // refuted leave `tried`.
+  // @param result  of the rounds before; gets what is refused
+  [[nodiscard]] std::optional<std::size_t> confirmed(std::vector<Trial>& tried,
+                                                     const HeldOut& current, double least_fall,
+                                                     const Signals& judged,
+                                                     SearchResult& result) const {
+    const RecordingsOut recordings(judged, blocks_);
+    const std::size_t candidates = tried.size();
+    std::vector<double> before;
+    while (!tried.empty() && std::isfinite(tried.front().rmse)) {
+      const std::size_t chosen = added_of(tried, current, least_fall, candidates, options_);
+      if (chosen == tried.size()) break;
+      if (is_refused_by_surrogates(tried, chosen, current, judged, result)) continue;
+      const Trial& trial = tried[chosen];
+      if (!recordings.several() || !asks_recordings(trial)) return chosen;
+      if (before.empty()) before = recordings.errors(result.model);
+      const std::vector<double> fall = falls(before, recordings.errors(trial.model));
+      if (!refuted(fall, options_.least_fall)) return chosen;
+      result.refuted.push_back({trial.model.effects.back(), fall});
+      tried.erase(tried.begin() + static_cast<std::ptrdiff_t>(chosen));
+    }
+    return std::nullopt;
+  }
+
+  // Eq. DG-94: asks all of the round, if this one has to be asked and none has been.
+  bool is_refused_by_surrogates(std::vector<Trial>& tried, std::size_t chosen,
+                                const HeldOut& current, const Signals& judged,
+                                SearchResult& result) const {
+    const auto fall = [&](const Trial& trial) {
+      return 1.0 - compared(current, trial.held_out).rmse_ratio;
+    };
+    const auto has_to_be_asked = [&](const Trial& trial) {
+      return is_tested_by_surrogates(trial) && fall(trial) < options_.large_fall;
+    };
+    if (!has_to_be_asked(tried[chosen]) || tried[chosen].surrogate_p > 0.0) return false;
+    const std::vector<double> p = surrogate_p_of(tried, result.model, judged, settings_);
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      if (std::isfinite(tried[i].rmse) && has_to_be_asked(tried[i])) tried[i].surrogate_p = p[i];
+    }
+    if (!is_by_chance(tried[chosen])) return false;
+    result.by_chance.push_back(
+        {tried[chosen].model.effects.back(), fall(tried[chosen]), p[chosen]});
     return true;
   }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "services/core/diagnosis/detection/surrogates.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/statistics/sample_check.hpp"
 #include "services/core/statistics/signed_rank.hpp"
@@ -41,7 +42,9 @@ bool shows_in_rows(const Trial& trial) {
 
 // METHOD Eq. DG-50: an error and what its numbers cost.
 double schwarz(const Trial& trial) {
-  if (!std::isfinite(trial.rmse)) return std::numeric_limits<double>::infinity();
+  if (!std::isfinite(trial.rmse) || is_by_chance(trial)) {
+    return std::numeric_limits<double>::infinity();
+  }
   const double samples = sum_of(trial.held_out.weights);
   return 2.0 * samples * std::log(std::max(trial.rmse, 1e-300)) +
          static_cast<double>(complexity(trial.model)) * std::log(samples);
@@ -97,10 +100,7 @@ bool ties_with(const Trial& other, const Trial& best, double current_rmse,
          gain(other) >= options.tied_gain * gain(best);
 }
 
-bool depends_on_signals(const Trial& trial) {
-  const Effect& effect = trial.model.effects.back();
-  return !passes_over_samples(trial) && !effect_kind(effect.kind).time_only(effect);
-}
+bool is_by_chance(const Trial& trial) { return trial.surrogate_p > kSurrogateSignificance; }
 
 std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
                       const SearchOptions& options,
@@ -110,7 +110,7 @@ std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
   const auto own = static_cast<std::size_t>(&best - tried.data());
   std::vector<std::size_t> ties{own};
   for (std::size_t i = 0; i < tried.size(); ++i) {
-    if (i == own || !std::isfinite(tried[i].rmse)) continue;
+    if (i == own || !std::isfinite(tried[i].rmse) || is_by_chance(tried[i])) continue;
     if (ties_with(tried[i], best, current_rmse, options)) ties.push_back(i);
   }
   const auto numbers = [&](std::size_t i) { return complexity(tried[i].model); };
@@ -131,7 +131,7 @@ std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
 
 bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
                      std::size_t candidates, const SearchOptions& options) {
-  if (trial.by_chance) return false;
+  if (is_by_chance(trial)) return false;
   const Comparison comparison = compared(current, trial.held_out);
   // Bursts lie in few blocks, too few for the signs; that they stand out has been tested already.
   if (passes_over_samples(trial)) return 1.0 - comparison.rmse_ratio > options.large_fall;
@@ -158,7 +158,7 @@ std::vector<std::string> tied_kinds(const std::vector<Trial>& tried, std::size_t
   std::vector<std::string> kinds;
   const std::string& own = tried[chosen].model.effects.back().kind;
   for (const Trial& trial : tried) {
-    if (!std::isfinite(trial.rmse)) continue;
+    if (!std::isfinite(trial.rmse) || is_by_chance(trial)) continue;
     const std::string& kind = trial.model.effects.back().kind;
     if (kind == own || std::ranges::find(kinds, kind) != kinds.end()) continue;
     if (ties_with(trial, tried[chosen], current_rmse, options)) kinds.push_back(kind);

@@ -39,20 +39,20 @@ Comparison compared(const HeldOut& before, const HeldOut& after);
 struct Trial {
   Model model;
   HeldOut held_out;
-  double rmse = 0.0;       ///< held out
-  std::size_t added = 0;   ///< index of the effect that it tried
-  bool own_body = false;   ///< it started from a body that was estimated for it
-  bool fitted = true;      ///< no: the screening shows that nothing is to be gained
-  bool by_chance = false;  ///< surrogates of the residual give as much, Eq. DG-94
+  double rmse = 0.0;      ///< held out
+  std::size_t added = 0;  ///< index of the effect that it tried
+  bool own_body = false;  ///< it started from a body that was estimated for it
+  bool fitted = true;     ///< no: the screening shows that nothing is to be gained
+  /// [-] of as large a share of surrogates of the residual, Eq. DG-94; 0: not asked.
+  double surrogate_p = 0.0;
 };
 
 bool by_rmse(const Trial& a, const Trial& b);
 /// True when the last effect leaves samples out and explains none.
 bool passes_over_samples(const Trial& trial);
 
-/// True when its last effect depends on an input, a channel or a state; others describe one
-/// recording and cannot be tested on another.
-bool depends_on_signals(const Trial& trial);
+/// True when surrogates of the residual give as much: it is not chosen.
+bool is_by_chance(const Trial& trial);
 
 /// True when the residual is no more than rounding of the output's own numbers.
 bool is_rounding(double rmse, const Signals& signals);

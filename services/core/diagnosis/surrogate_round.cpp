@@ -25,26 +25,36 @@ Eigen::MatrixXd added_by(const Trial& trial, const Screening& screening) {
 
 bool is_tested_by_surrogates(const Trial& trial) {
   const Effect& effect = trial.model.effects.back();
-  return depends_on_signals(trial) && !effect_kind(effect.kind).shows_in_rows(effect);
+  const EffectKind& kind = effect_kind(effect.kind);
+  const Stage stage = kind.stage(effect);
+  const bool of_time_alone =
+      stage == Stage::kTerm && kind.time_only(effect) && effect.channels.empty();
+  return stage != Stage::kWeight && !of_time_alone && !kind.shows_in_rows(effect);
 }
 
-double surrogate_p_of(const std::vector<Trial>& tried, std::size_t chosen, const Model& current,
-                      const Signals& judged, const RoundSettings& settings) {
+std::vector<double> surrogate_p_of(const std::vector<Trial>& tried, const Model& current,
+                                   const Signals& judged, const RoundSettings& settings) {
   const Signals part = screened_part(judged);
   const Blocks blocks = part.size() == judged.size() ? settings.blocks : make_blocks(part);
   const Screening screening(current, part, blocks, settings.impulse_response);
   const SurrogateGains gains(screening.jacobian(), screening.residual(), screening.weight(),
                              blocks);
+  // Those that were left out before their fit as well: a surrogate may have had a use for them.
   std::vector<SurrogateShares> shares(tried.size());
   settings.for_each(tried.size(), [&](std::size_t i) {
-    if (!std::isfinite(tried[i].rmse) || !is_tested_by_surrogates(tried[i])) return;
-    shares[i] = gains.shares(added_by(tried[i], screening));
+    if (!is_tested_by_surrogates(tried[i])) return;
+    const Eigen::MatrixXd added = added_by(tried[i], screening);
+    if (added.allFinite()) shares[i] = gains.shares(added);
   });
   Eigen::ArrayXd by_chance = Eigen::ArrayXd::Zero(kSurrogates);
   for (const SurrogateShares& each : shares) {
     if (each.surrogates.size() > 0) by_chance = by_chance.max(each.surrogates);
   }
-  return surrogate_p(shares[chosen].own, by_chance);
+  std::vector<double> p(tried.size(), 0.0);
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    if (shares[i].surrogates.size() > 0) p[i] = surrogate_p(shares[i].own, by_chance);
+  }
+  return p;
 }
 
 }  // namespace stillhand::diagnosis

@@ -104,7 +104,7 @@ TEST_F(DiagnosisReportTest, EverySectionAndFigureIsThere) {
   ASSERT_THAT(with_friction_->found.effects, testing::SizeIs(1));
   for (const char* part :
        {"Error before and after", "What the baseline lacks", "What is left", "What was tried",
-        "95 % interval", "noise floor", "Numbers of the final model", "candidates", "Holm"}) {
+        "95 % interval", "noise floor", "Numbers of the final model", "candidates", "surrogates"}) {
     EXPECT_THAT(with_friction_->html, HasSubstr(part));
   }
   for (const char* name : {"prediction", "residual_spectra", "effect_1", "residual_over_time",

@@ -41,8 +41,7 @@ const Detection* find(const DetectionResult& result, const std::string& question
 }
 
 // Nothing is added to noise of 0.05: none of some twenty questions answers with more than 6 % of
-// the power and a corrected p of 1 %.  Ten recordings, so one false alarm in a thousand is expected
-// at most.
+// the power and a p of 1 %.
 TEST(DetectionTest, WhiteNoiseAnswersNoQuestion) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const DetectionResult sut = detected_in(made_with(seed, [](auto...) { return 0.0; }));

@@ -376,4 +376,33 @@ TEST(DiagnoseTest, ASignalThatWasMadeIsTold) {
   EXPECT_THAT(sut.notes, Contains(HasSubstr("'rate of theta' was made from theta")));
 }
 
+// The noise has a line at 5 Hz, and so has a channel: its two numbers explain the line in every
+// block, and would explain any other line there as well.
+TEST(DiagnoseTest, WhatAnyPhaseOfTheNoiseWouldGiveIsNotNamed) {
+  constexpr std::size_t kLong = 6000;
+  const auto line = [](double phase) {
+    std::vector<double> x(kLong);
+    for (std::size_t n = 0; n < kLong; ++n) {
+      x[n] =
+          std::sin(2.0 * std::numbers::pi * 5.0 * static_cast<double>(n) / made::kRateHz + phase);
+    }
+    return x;
+  };
+  const auto u = made::ride(kLong, 1);
+  const auto v = line(0.0);
+  const auto noise = line(0.7);
+  std::vector<double> y = made::white(kLong, 3);
+  for (std::size_t n = 0; n < kLong; ++n) y[n] = 2.0 * u[n] + 0.1 * y[n] + 0.05 * noise[n];
+  const Diagnosis sut =
+      diagnose(made::measurement_of({{"u", "V", u}, {"theta", "rad", v}, {"y", "N", y}}),
+               options_of(ModelClass::kLinear));
+  ASSERT_FALSE(sut.search.by_chance.empty());
+  EXPECT_EQ(sut.search.by_chance[0].effect.kind, "coupled_input");
+  EXPECT_GT(sut.search.by_chance[0].p, kSurrogateSignificance);
+  EXPECT_THAT(sut.notes, Contains(HasSubstr("copies of what the model leaves")));
+  // Time alone explains as much, and does not claim a cause.
+  ASSERT_FALSE(sut.effects.empty());
+  EXPECT_EQ(sut.effects[0].effect.kind, "tone");
+}
+
 }  // namespace stillhand::diagnosis::diagnose_test

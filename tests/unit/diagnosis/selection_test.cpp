@@ -39,14 +39,17 @@ Trial even(const char* kind, double mean_square, std::size_t numbers) {
   return tried(kind, std::vector<double>(kBlocks, mean_square), numbers);
 }
 
-// Of the chosen and of all the others.
-TEST(SelectionTest, WhatSurrogatesGiveAsWellIsNotWorthAdding) {
-  const Trial better = even("delay", 1.0, 1);
+// p of 99 surrogates: one gives as much, or none does.
+TEST(SelectionTest, WhatSurrogatesGiveAsWellIsNotChosen) {
+  std::vector<Trial> sut{even("delay", 1.0, 1), even("drift", 2.0, 1)};
   const HeldOut current = even("delay", 4.0, 1).held_out;
-  EXPECT_TRUE(is_worth_adding(better, current, 0.005, 1, {}));
-  Trial sut = better;
-  sut.by_chance = true;
-  EXPECT_FALSE(is_worth_adding(sut, current, 0.005, 1, {}));
+  sut[0].surrogate_p = 0.01;
+  EXPECT_EQ(chosen_of(sut, 2.0, {}), 0u);
+  EXPECT_TRUE(is_worth_adding(sut[0], current, 0.005, 1, {}));
+  sut[0].surrogate_p = 0.02;
+  EXPECT_EQ(chosen_of(sut, 2.0, {}), 1u);
+  EXPECT_FALSE(is_worth_adding(sut[0], current, 0.005, 1, {}));
+  EXPECT_THAT(tied_kinds(sut, 1, 2.0, {}), IsEmpty());
 }
 
 // 800 samples: ln(1.5) 800 = 324 for the error, ln(800) = 6.7 a number.

@@ -7,7 +7,6 @@
 #include <iterator>
 #include <numbers>
 
-#include "services/core/diagnosis/detection/surrogates.hpp"
 #include "services/core/statistics/multiple_testing.hpp"
 
 namespace stillhand::diagnosis {

@@ -7,6 +7,7 @@
 
 #include "services/core/diagnosis/detection/detection_lines.hpp"
 #include "services/core/diagnosis/detection/partial_coherence.hpp"
+#include "services/core/diagnosis/detection/surrogates.hpp"
 #include "services/core/diagnosis/fitting/screening.hpp"
 
 namespace stillhand::diagnosis {
@@ -14,8 +15,9 @@ namespace stillhand::diagnosis {
 /// A question is answered yes above this share [-] of the squared error (3 % of its root: less is
 /// not worth a question),
 inline constexpr double kLeastShare = 0.06;
-/// and up to this probability [-] by chance, of all questions together, Eq. DG-93.
-inline constexpr double kSignificance = 0.01;
+/// and up to this probability [-] by chance: of all questions together by surrogates, Eq. DG-93, of
+/// the lines after Holm.
+inline constexpr double kSignificance = kSurrogateSignificance;
 /// Question about a multisine's detection lines; its `channel` says which lines.
 inline constexpr const char* kDistortion = "distortion at";
 

@@ -47,9 +47,8 @@ Eigen::MatrixXd surrogates(const Eigen::VectorXd& residual, const std::vector<do
   for (std::size_t i = 0; i < count; ++i) {
     const double part = kLeastMoved + (1.0 - 2.0 * kLeastMoved) * (static_cast<double>(i) + 0.5) /
                                           static_cast<double>(count);
-    all.col(static_cast<Eigen::Index>(i)) = i % 2 == 0
-                                                ? moved_in_time(residual, weight, part, i % 4 == 2)
-                                                : with_other_phases(residual, weight, i);
+    all.col(static_cast<Eigen::Index>(i)) = i % 2 == 0 ? moved_in_time(residual, weight, part, true)
+                                                       : with_other_phases(residual, weight, i);
   }
   return all;
 }

@@ -15,14 +15,16 @@ Eigen::VectorXd moved_in_time(const Eigen::VectorXd& residual, const std::vector
                               double part, bool backwards);
 
 /// Surrogate data, METHOD Eq. DG-93: noise with this residual's spectrum that nothing in the inputs
-/// explains.  The even ones are moved in time, by a tenth of the record to nine tenths, every
-/// second of them backwards; the odd ones have other phases.  Pure.
+/// explains.  The even ones are turned backwards and moved in time, by a tenth of the record to
+/// nine tenths; the odd ones have other phases.  Pure.
 /// @return [samples x count]
 Eigen::MatrixXd surrogates(const Eigen::VectorXd& residual, const std::vector<double>& weight,
                            std::size_t count);
 
 /// So many say with p = 1 % that none of them reaches a value.
 inline constexpr Eigen::Index kSurrogates = 99;
+/// [-] A larger p is chance.
+inline constexpr double kSurrogateSignificance = 0.01;
 /// [-] p of a value, by how many of the surrogates reach it: (1 + reached)/(1 + count).
 double surrogate_p(double value, const Eigen::ArrayXd& of_surrogates);
 
