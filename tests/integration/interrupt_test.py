@@ -11,8 +11,9 @@ import time
 import lab_process
 from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, quick_session, running
 
-# No person at a terminal waits longer. Measured on two busy cores (2026-11): 0.4 s before the trials, 2.3 s in one.
-INTERRUPT_LIMIT_S = 10.0
+# It ends by itself: 0.4 s before the trials, 2.3 s in one, on two busy cores (2026-11). Next to tests and compilers, at
+# a load of 5 to 10, it once took over 10 s.
+INTERRUPT_LIMIT_S = 60.0
 
 
 class InterruptTest(LabTestCase):

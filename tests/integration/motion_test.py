@@ -74,7 +74,7 @@ class MotionTest(unittest.TestCase):
         self.assertLessEqual(max(abs(row[1]) for row in signals["command"]), TRAVEL_M)
         self.assertLessEqual(max(abs(row[1]) for row in signals["truth"]), TRAVEL_M)
 
-    def assert_follows(self, name, wanted, signals):
+    def assert_follows(self, name, wanted, signals, lab):
         by_tick = {row[0]: row[2] for row in signals["truth"]}
         first = min(by_tick)
         ticks = range(first, first + len(wanted))
@@ -87,7 +87,8 @@ class MotionTest(unittest.TestCase):
         found, lag = best_correlation(wanted, followed)
         print(f"{name}: correlation {found:.4f} at a lag of {lag} ms, RMS {rms(wanted):.3f} wanted, "
               f"{rms(followed):.3f} m/s^2 followed", flush=True)
-        self.assertGreater(found, LEAST_CORRELATION)
+        self.assertGreater(found, LEAST_CORRELATION,
+                           f"{len(by_tick)} ticks from {first} on; trials: {lab.summary()['trials']}")
         self.assertAlmostEqual(rms(followed) / rms(wanted), 1.0, delta=0.1)
 
     def asked(self, lab):
@@ -112,7 +113,7 @@ class MotionTest(unittest.TestCase):
         wanted = [tones_at(tick / TICKS_PER_S, KEPT) for tick in range(TRIAL_S * TICKS_PER_S)]
         # The platform's motion also holds the rest of the tone of 0.1 Hz that the high-pass leaves (less than 0.2 % with a
         # corner above 0.3 Hz), and the ends of the record (the wanted tones are not periodic in 10 s).
-        self.assert_follows("CSV ride", wanted, signals)
+        self.assert_follows("CSV ride", wanted, signals, lab)
         asked = self.asked(lab)
         self.assertEqual(asked["kind"], "ride")
         # Below 0.1 Hz the tone would stay; 1.3 Hz is kept.
@@ -139,7 +140,7 @@ class MotionTest(unittest.TestCase):
         # what lies above 6 Hz and the sensor's noise.
         wanted = [accel for tick, accel in recorded if tick - recorded[0][0] < TRIAL_S * TICKS_PER_S]
         self.assertGreater(rms(wanted), 0.5)
-        self.assert_follows("recorded ride", wanted, signals)
+        self.assert_follows("recorded ride", wanted, signals, lab)
         self.assertLess(self.asked(lab)["removed_share"], 0.1)
 
     @campaign
@@ -154,7 +155,7 @@ class MotionTest(unittest.TestCase):
         variance = (2.0 * math.pi) ** 4 * ROAD_G0_M3 * 0.01 * ROAD_SPEED_M_S * (high_hz**3 - low_hz**3) / 3.0
         self.assertAlmostEqual(rms(command) / math.sqrt(variance), 1.0, delta=0.03)
         self.assertAlmostEqual(self.asked(lab)["rms_m_s2"], rms(command), delta=0.01)
-        self.assert_follows("road", command, signals)
+        self.assert_follows("road", command, signals, lab)
         self.assertEqual((self.asked(lab)["road_class"], self.asked(lab)["speed_m_s"]), (ROAD_CLASS, ROAD_SPEED_M_S))
         self.assertIn("class C at 15.0 m/s", self.note_of_motion(lab))
         self.assertIn("class C at 15.0 m/s", lab.output())
