@@ -147,6 +147,17 @@ inline Body two_pole_body() {
   return body;
 }
 
+/// y = body(u) + 0.3 v + noise of 0.05; v is no channel that a model of u knows.
+inline Measurement with_another_channel(std::size_t count) {
+  const auto u = ride(count, 1);
+  const auto v = ride(count, 2);
+  const auto noise = white(count, 3);
+  const Body body = two_pole_body();
+  auto y = answer(body.numerators[0], body.denominator, u);
+  for (std::size_t n = 0; n < count; ++n) y[n] += 0.3 * v[n] + 0.05 * noise[n];
+  return measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
+}
+
 inline std::complex<double> response(const Body& body, double frequency_hz) {
   const std::complex<double> back =
       std::polar(1.0, -2.0 * std::numbers::pi * frequency_hz / kRateHz);

@@ -12,21 +12,10 @@ namespace stillhand::diagnosis::screening_test {
 constexpr std::size_t kCount = 6000;
 constexpr double kNoise = 0.05;
 
-// y = body(u) + 0.3 v + noise; v is no channel that the model knows.
-Measurement with_another_channel() {
-  const auto u = made::ride(kCount, 1);
-  const auto v = made::ride(kCount, 2);
-  const auto noise = made::white(kCount, 3);
-  const Body body = made::two_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
-  for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.3 * v[n] + kNoise * noise[n];
-  return made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
-}
-
 // 0.09 of 0.09 + 0.0025 is the channel's, less what the body's own numbers had taken of it; the
 // coefficient is known to 0.05/sqrt(6000) = 0.0007.
 TEST(ScreeningTest, AColumnThatIsMissingGainsItsShare) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   const ScreenedGain sut = of.screening.gain({of.signals.at("v").values});
   EXPECT_NEAR(sut.share, 1.0 - kNoise * kNoise / (0.09 + kNoise * kNoise), 0.01);
   EXPECT_NEAR(sut.coefficients.at(0), 0.3, 0.003);
@@ -36,7 +25,7 @@ TEST(ScreeningTest, AColumnThatIsMissingGainsItsShare) {
 
 // Held out, a number without a meaning costs 2/n of the squares.
 TEST(ScreeningTest, AColumnWithoutAMeaningGainsNothing) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   double sum = 0.0;
   for (std::uint64_t seed = 100; seed < 110; ++seed) {
     const ScreenedGain sut = of.screening.gain({made::white(kCount, seed)});
@@ -48,7 +37,7 @@ TEST(ScreeningTest, AColumnWithoutAMeaningGainsNothing) {
 
 // The folds without its one large row give it a coefficient that is beyond any test there.
 TEST(ScreeningTest, AColumnWhoseErrorOverflowsGainsNothing) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   std::vector<double> column = made::white(kCount, 4);
   for (double& value : column) value *= 1e-94;
   column[kCount / 2] = 1.0;
@@ -58,14 +47,14 @@ TEST(ScreeningTest, AColumnWhoseErrorOverflowsGainsNothing) {
 }
 
 TEST(ScreeningTest, WhatTheModelHasAlreadyGainsNothing) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   EXPECT_LT(of.screening.gain({of.signals.at("u").values}).share, 0.002);
   EXPECT_LT(of.screening.gain({std::vector<double>(kCount, 1.0)}).share, 0.002);
 }
 
 // The model's numbers move along: the same least squares as with all columns at once.
 TEST(ScreeningTest, CoefficientsAreThoseOfTheJointLeastSquares) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   const auto extra = made::ride(kCount, 9);
   const ScreenedGain sut = of.screening.gain({of.signals.at("v").values, extra});
   const Linearisation line = linearised(of.baseline.model, of.signals);
@@ -85,7 +74,7 @@ TEST(ScreeningTest, CoefficientsAreThoseOfTheJointLeastSquares) {
 }
 
 TEST(ScreeningTest, PassagesThroughTheBodyAreDifferencesBehindItsPoles) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   const auto x = made::white(kCount, 5);
   const Columns sut = of.screening.through_body(x);
   ASSERT_EQ(sut.size(), 3u);
@@ -100,7 +89,7 @@ TEST(ScreeningTest, PassagesThroughTheBodyAreDifferencesBehindItsPoles) {
 }
 
 TEST(ScreeningTest, AnEffectIsGivenTheCoefficientsOfItsColumns) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   const auto [effect, gain] =
       of.screening.with_coefficients({"coupled_input", "static", {"v"}, {}, {}});
   ASSERT_EQ(effect.coefficients.size(), 1u);
@@ -115,7 +104,7 @@ TEST(ScreeningTest, AnEffectIsGivenTheCoefficientsOfItsColumns) {
 
 // Before a clipping output the column counts only where nothing clips.
 TEST(ScreeningTest, ColumnsAreSeenThroughTheOutputsMap) {
-  Measurement measurement = with_another_channel();
+  Measurement measurement = made::with_another_channel(kCount);
   for (double& y : measurement.channels[2].values) y = std::clamp(y, -0.6, 0.6);
   const Signals signals(measurement, {"u"}, "y");
   const Blocks blocks = make_blocks(signals);

@@ -77,17 +77,6 @@ TEST(SurrogatesTest, ProbabilityCountsTheRecordItself) {
   EXPECT_DOUBLE_EQ(surrogate_p(0.0, of_surrogates), 1.0);
 }
 
-// y = body(u) + 0.3 v + noise; v is no channel that the model knows.
-Measurement with_another_channel() {
-  const auto u = made::ride(kCount, 1);
-  const auto v = made::ride(kCount, 2);
-  const auto noise = made::white(kCount, 3);
-  const Body body = made::two_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
-  for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.3 * v[n] + 0.05 * noise[n];
-  return made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
-}
-
 SurrogateShares shares_of(const made::Studied& of, const Columns& columns) {
   const Screening& screening = of.screening;
   return SurrogateGains(screening.jacobian(), screening.residual(), screening.weight(), of.blocks)
@@ -95,7 +84,7 @@ SurrogateShares shares_of(const made::Studied& of, const Columns& columns) {
 }
 
 TEST(SurrogatesTest, EachHasTheShareOfAResidualThatIsIt) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   const Columns columns{of.signals.at("v").values, made::white(kCount, 7)};
   const SurrogateShares sut = shares_of(of, columns);
   EXPECT_NEAR(sut.own, of.screening.gain(columns).share, 1e-9);
@@ -114,7 +103,7 @@ TEST(SurrogatesTest, EachHasTheShareOfAResidualThatIsIt) {
 }
 
 TEST(SurrogatesTest, WhatAChannelExplainsItDoesNotExplainOfSurrogates) {
-  const made::Studied of(with_another_channel(), 2);
+  const made::Studied of(made::with_another_channel(kCount), 2);
   const SurrogateShares sut = shares_of(of, {of.signals.at("v").values});
   EXPECT_GT(sut.own, 0.9);
   EXPECT_LT(sut.surrogates.maxCoeff(), 0.02);
