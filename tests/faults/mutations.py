@@ -4,13 +4,14 @@
 
 Usage: STILLHAND_BUILD=build /usr/bin/python3 tests/faults/mutations.py --out FILE.csv [--runs 200] [--seed 1]
 
-Each change is one token of one line of the cores or of a library of the verbs: a comparison, a sign, a number, a truth,
-an "and" that is never true, an "or" that always is, or a whole assignment. All changes are built in at once, each behind
-a switch that the environment sets; so a change takes the time of the unit tests alone. Those of the file's own folder
-run first, then all others that its object files go into. Prints a line a change and ends with the share that was noticed
-and its 95 % interval (Wilson). A change that cannot be switched at run time (the size of an array, the value of a
-constant expression) is drawn again. Some changes mean the same program: read those that nobody noticed. The sources are
-as before at the end; no other program may build in the tree meanwhile, which has to be built again afterwards.
+Each change is one token of one line of the cores or of a library of the verbs: a comparison, a sign, a number, a
+truth, an "and" that is never true, an "or" that always is, or a whole assignment. All changes are built in at once,
+each behind a switch that the environment sets; so a change takes the time of the unit tests alone. Those of the
+file's own folder run first, then all others that its object files go into. Prints a line a change and ends with the
+share that was noticed and its 95 % interval (Wilson). A change that cannot be switched at run time (the size of an
+array, the value of a constant expression) is drawn again. Some changes mean the same program: read those that nobody
+noticed. The sources are as before at the end, not after a kill; no other program may build in the tree meanwhile.
+Build it again afterwards.
 """
 import argparse
 import concurrent.futures
@@ -191,7 +192,7 @@ def users():
 
 
 def passes(program, number):
-    """The exit status 77 is a skip. Files of its own: the same program may run beside it."""
+    """The exit status 77 is a skip. Files of its own: the same program may run twice at once."""
     with tempfile.TemporaryDirectory() as own:
         try:
             return subprocess.run([str(BUILD / "tests" / program), "--gtest_brief=1", "--gtest_fail_fast"], cwd=BUILD,

@@ -231,9 +231,7 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
         short_number(found.options.search.significance) +
         " divided by the number of candidates (not divided if the error falls by more than " +
         percent(found.options.search.large_fall, 0) +
-        "). By chance: copies of what the model leaves, moved in time or with other phases, give "
-        "as "
-        "much. At most " +
+        "). By chance: copies of what the model leaves give as much. At most " +
         std::to_string(found.options.search.most_effects) + " effects are added.";
     tables.push_back(tried_table(
         found, {found.search.last_current, last, last.size(), found.options.search}, caption));
@@ -275,11 +273,11 @@ Table detection_table(const Diagnosis& found) {
   Table table;
   table.caption =
       "Questions to the residual. Each adds columns to the model, and the model is fitted again. "
-      "Share: the part of the residual's power that the columns explain on held-out blocks. p: how "
-      "many of " +
-      std::to_string(diagnosis::kSurrogates) +
-      " surrogates of the residual, which are moved in time or have other phases, answer any of "
-      "the questions with as large a share, and the residual itself; of lines a test of their own.";
+      "Share: the part of the residual's power that the columns explain on held-out blocks. p: "
+      "(1 + n)/" +
+      std::to_string(diagnosis::kSurrogates + 1) +
+      ", where n surrogates answer any of the questions with as large a share. A surrogate is the "
+      "residual moved in time, or with other phases. Lines have a test of their own.";
   const bool both = !found.effects.empty();
   table.header = {"question", "about", "share", "p", "found"};
   table.align = {Align::kLeft, Align::kLeft, Align::kRight, Align::kRight, Align::kLeft};

@@ -91,11 +91,13 @@ TEST(SurrogatesTest, EachHasTheShareOfAResidualThatIsIt) {
   const Eigen::MatrixXd all = surrogates(of.screening.residual(), of.screening.weight(),
                                          static_cast<std::size_t>(kSurrogates));
   for (Eigen::Index i = 0; i < kSurrogates; ++i) {
-    std::vector<double> output = of.screening.prediction();
+    Measurement made_of_it = made::with_another_channel(kCount);
+    std::vector<double>& output = made_of_it.channels[2].values;
+    output = of.screening.prediction();
     for (std::size_t n = 0; n < output.size(); ++n) {
       output[n] += all(static_cast<Eigen::Index>(n), i);
     }
-    const Signals with_it = of.signals.with_output(output);
+    const Signals with_it(made_of_it, {"u"}, "y");
     const Screening screening(of.baseline.model, with_it, of.blocks, of.impulse_response);
     // The initial state has been taken out of the residual there, of some ten samples.
     EXPECT_NEAR(sut.surrogates[i], screening.gain(columns).share, 1e-3) << i;

@@ -380,12 +380,6 @@ Signals Signals::replaced(std::string_view name, std::vector<double> values) con
   return other;
 }
 
-Signals Signals::with_output(std::vector<double> values) const {
-  Signals other = *this;
-  other.output_.values = std::move(values);
-  return other;
-}
-
 Signals Signals::moved(
     const std::function<std::vector<double>(const Signal& signal)>& values) const {
   Signals other = *this;

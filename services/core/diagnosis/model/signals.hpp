@@ -85,8 +85,6 @@ class Signals {
   [[nodiscard]] std::vector<double> without_pasts(const std::vector<double>& run) const;
   /// The same signals, one of them with other values.
   [[nodiscard]] Signals replaced(std::string_view name, std::vector<double> values) const;
-  /// The same signals with another output, whose mean and deviation stay.
-  [[nodiscard]] Signals with_output(std::vector<double> values) const;
   /// The same instants of another motion: every signal but the output with other values; means and
   /// deviations stay those of the measurement.
   [[nodiscard]] Signals moved(
