@@ -9,10 +9,16 @@ records one has no effect; of the others every second one's first effect is of a
 determined by the seed and its number.
 
     python3 tests/naming/fresh_bodies.py --count 60 --seed 1 --out DIR      # about 10 s of a processor a record
+    python3 tests/naming/fresh_bodies.py --count 60 --sealed TRUTH --out DIR
+
+A sealed set has a seed that nobody chose or knows. DIR holds what a tool may read and seal.sha256, the digests of TRUTH,
+which stays with the judge until the entries are in.
 """
 import argparse
+import hashlib
 import json
 import pathlib
+import secrets
 import sys
 
 import numpy
@@ -188,16 +194,18 @@ class Record:
         needed = {part for effect in self.effects for part in (effect.channel or "").split("*")}
         return [name for name in CHANNELS if name in ALWAYS or name in needed or self.random.random() < 0.75]
 
-    def write(self, folder):
+    def write(self, folder, sealed=None):
+        """@param sealed  where the truth and the force of the test go, if not to the folder"""
         name = f"rec_{self.number + 1:04d}"
         kept = self.channels()
-        tables = []
-        for which, part in enumerate(("train", "test")):
-            table, free = self.rows(which, kept)
-            write_csv(folder / f"{name}_{part}.csv", table)
-            tables.append(table)
-        write_csv(folder / f"{name}_test.noise_free.csv", {"t": tables[1]["t"], "f_noise_free": numpy.round(free, 5)})
-        (folder / f"{name}.truth.json").write_text(json.dumps(self.truth(tables, free), indent=1) + "\n")
+        (train, _), (test, free) = self.rows(0, kept), self.rows(1, kept)
+        write_csv(folder / f"{name}_train.csv", train)
+        if sealed:
+            write_csv(folder / f"{name}_test.csv", {column: test[column] for column in test if column != "f"})
+        truth = sealed or folder
+        write_csv(truth / f"{name}_test.csv", test)
+        write_csv(truth / f"{name}_test.noise_free.csv", {"t": test["t"], "f_noise_free": numpy.round(free, 5)})
+        (truth / f"{name}.truth.json").write_text(json.dumps(self.truth((train, test), free), indent=1) + "\n")
 
     def truth(self, tables, free):
         grid = [(at_rows(a), at_rows(f)) for a, f in zip(self.a_y, self.measured)]
@@ -230,20 +238,35 @@ def write_csv(path, table):
     numpy.savetxt(path, numpy.column_stack(list(table.values())), delimiter=",", header=titles, comments="", fmt="%.7g")
 
 
+def write_seal(truth, path):
+    """Digests of the truth's files, as `sha256sum -c` reads them."""
+    lines = [f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}\n" for file in sorted(truth.glob("rec_*"))]
+    path.write_text("".join(lines))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=60)
-    parser.add_argument("--seed", type=int, default=1)
+    seed_of = parser.add_mutually_exclusive_group()
+    seed_of.add_argument("--seed", type=int, default=1)
+    seed_of.add_argument("--sealed", type=pathlib.Path, metavar="TRUTH", help="an empty folder for what a tool may not read")
     parser.add_argument("--out", type=pathlib.Path, required=True)
     words = parser.parse_args()
-    words.out.mkdir(parents=True, exist_ok=True)
-    deck = numpy.random.default_rng([words.seed, 1 << 20])
+    for folder in filter(None, (words.out, words.sealed)):
+        folder.mkdir(parents=True, exist_ok=True)
+    if words.sealed and any(any(folder.iterdir()) for folder in (words.out, words.sealed)):
+        parser.error("a sealed set wants two empty folders")
+    seed = secrets.randbits(64) if words.sealed else words.seed
+    deck = numpy.random.default_rng([seed, 1 << 20])
     known, outside = (list(deck.permutation(numpy.array(kinds, dtype=object)))
                       for kinds in (fresh_effects.KNOWN, fresh_effects.OUTSIDE))
     for number in range(words.count):
-        record = Record(words.seed, number, known, outside)
-        record.write(words.out)
-        print(f"rec_{number + 1:04d}: {', '.join(effect.kind for effect in record.effects) or 'no effect'}", flush=True)
+        record = Record(seed, number, known, outside)
+        record.write(words.out, words.sealed)
+        what = "sealed" if words.sealed else ", ".join(effect.kind for effect in record.effects) or "no effect"
+        print(f"rec_{number + 1:04d}: {what}", flush=True)
+    if words.sealed:
+        write_seal(words.sealed, words.out / "seal.sha256")
 
 
 if __name__ == "__main__":
