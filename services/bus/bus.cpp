@@ -127,7 +127,7 @@ edds::Topic* topic_of(edds::DomainParticipant& participant,
 
 }  // namespace
 
-detail::Endpoint* Bus::add_writer(const topics::Topic& topic, const TypeTag& type) {
+detail::WriterEndpoint* Bus::add_writer(const topics::Topic& topic, const TypeTag& type) {
   const std::string profile(topics::profile_of(topic.pattern));
   edds::DataWriterQos qos;
   if (!ok(impl_->publisher->get_datawriter_qos_from_profile(profile, qos))) {
@@ -143,8 +143,9 @@ detail::Endpoint* Bus::add_writer(const topics::Topic& topic, const TypeTag& typ
   if (endpoint->writer == nullptr) {
     throw BusError("Fast DDS refused the writer of " + std::string(topic.name));
   }
+  detail::WriterEndpoint* const added = endpoint.get();
   impl_->endpoints.push_back(std::move(endpoint));
-  return impl_->endpoints.back().get();
+  return added;
 }
 
 void Bus::add_reader(const topics::Topic& topic, const TypeTag& type, std::shared_ptr<void> sample,

@@ -78,8 +78,8 @@ struct EndpointReport {
 };
 
 namespace detail {
-class Endpoint;
-void write(Endpoint& endpoint, void* message);
+class WriterEndpoint;
+void write(WriterEndpoint& endpoint, void* message);
 
 /// The part of a delivered sample that the supervision needs.
 struct SampleClock {
@@ -96,7 +96,7 @@ template <typename Message>
 class Publisher {
  public:
   Publisher() = default;
-  Publisher(detail::Endpoint* endpoint, std::uint32_t rig) : endpoint_(endpoint), rig_(rig) {}
+  Publisher(detail::WriterEndpoint* endpoint, std::uint32_t rig) : endpoint_(endpoint), rig_(rig) {}
 
   /// Does not block on best-effort topics.  `message` keeps its own fields otherwise.
   void write(Message& message) {
@@ -106,7 +106,7 @@ class Publisher {
   }
 
  private:
-  detail::Endpoint* endpoint_ = nullptr;
+  detail::WriterEndpoint* endpoint_ = nullptr;
   std::uint32_t rig_ = 0;
 };
 
@@ -241,7 +241,7 @@ class Bus {
     return true;
   }
   [[nodiscard]] bool speaks_for(std::string_view service, const ParticipantId& from) const noexcept;
-  detail::Endpoint* add_writer(const topics::Topic& topic, const TypeTag& type);
+  detail::WriterEndpoint* add_writer(const topics::Topic& topic, const TypeTag& type);
   void add_reader(const topics::Topic& topic, const TypeTag& type, std::shared_ptr<void> sample,
                   detail::Deliver deliver);
 

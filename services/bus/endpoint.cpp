@@ -37,8 +37,6 @@ const char* policy_name(std::uint32_t policy) {
 
 }  // namespace
 
-void write(Endpoint& endpoint, void* message) { endpoint.write(message); }
-
 std::set<std::string> Endpoint::matched_services() const {
   const std::lock_guard lock(mutex_);
   std::set<std::string> services;
@@ -88,14 +86,14 @@ void Endpoint::note_incident(BusIncident::Kind kind, const std::string& peer, do
   options_.on_incident(incident);
 }
 
-void WriterEndpoint::write(void* message) {
-  samples_.fetch_add(1, std::memory_order_relaxed);
-  if (serializer == nullptr) {
-    writer->write(message);
+void write(WriterEndpoint& endpoint, void* message) {
+  endpoint.samples_.fetch_add(1, std::memory_order_relaxed);
+  if (endpoint.serializer == nullptr) {
+    endpoint.writer->write(message);
     return;
   }
-  SerializedSample bytes = to_bytes(serializer->support, message);
-  writer->write(&bytes);
+  SerializedSample bytes = to_bytes(endpoint.serializer->support, message);
+  endpoint.writer->write(&bytes);
 }
 
 EndpointReport WriterEndpoint::report() {

@@ -33,7 +33,6 @@ class Endpoint {
   Endpoint(const Endpoint&) = delete;
   Endpoint& operator=(const Endpoint&) = delete;
 
-  virtual void write(void* /*message*/) {}
   /// @returns false when DDS refuses, as for a topic that is not this service's on a secured bus.
   [[nodiscard]] virtual bool enable() = 0;
   /// Deletes a reader, once its running callback has returned; nothing for a writer.
@@ -74,7 +73,6 @@ class WriterEndpoint final : public Endpoint, public edds::DataWriterListener {
  public:
   using Endpoint::Endpoint;
 
-  void write(void* message) override;
   bool enable() override { return ok(writer->enable()); }
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return true; }
@@ -84,6 +82,7 @@ class WriterEndpoint final : public Endpoint, public edds::DataWriterListener {
   const TypeTag* serializer = nullptr;  // real type of a topic carried as bytes
 
  private:
+  friend void write(WriterEndpoint& endpoint, void* message);
   void on_publication_matched(edds::DataWriter*,
                               const edds::PublicationMatchedStatus& status) override;
   // Fast DDS 2.9.1 crashes on a missed offered deadline when the writer has no listener of its own.

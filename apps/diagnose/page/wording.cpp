@@ -11,12 +11,6 @@
 namespace stillhand::diagnose {
 namespace {
 
-// As a reader writes a kind.
-std::string spaced(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
-}
-
 using diagnosis::Diagnosis;
 using diagnosis::FoundEffect;
 using report::short_number;

@@ -155,7 +155,6 @@ OutputErrorFit refine_output_error(const Record& record, const DifferenceModel& 
   OutputErrorFit fit;
   fit.model = all.model;
   fit.heldout = quality(seen.model, record, split);
-  fit.iterations = seen.iterations + all.iterations;
   fit.converged = all.converged;
   fit.start_rms_n = std::sqrt(start_cost / judged);
   fit.rms_n = std::sqrt(all.cost / judged);

@@ -9,7 +9,6 @@ namespace stillhand::identification {
 struct OutputErrorFit {
   DifferenceModel model;     ///< stable; from the whole record
   FitQuality heldout;        ///< of a fit to the first three quarters, on the last quarter
-  int iterations = 0;        ///< [-] accepted steps, both fits
   bool converged = false;    ///< the gradient vanished; false: the iteration limit came first
   double start_rms_n = 0.0;  ///< [N] free-run error of the (stabilised) start, whole record
   double rms_n = 0.0;        ///< [N] free-run error reached, never above start_rms_n

@@ -108,6 +108,34 @@ TEST(ArxTest, HeldOutErrorIsNotThatOfTheFit) {
   EXPECT_NEAR(sut.heldout.free_run_vaf_percent, -300.0, 1.0);  // error 2 f: 1 - 4
 }
 
+TEST(ArxTest, PooledRecordsGiveOneModelOfAllTheirSamples) {
+  const DifferenceModel truth = body_like_model();
+  const std::vector<ArxFactor> factors{factor_arx(record_of(truth, white_noise(400, 1.6, 1)), 4),
+                                       factor_arx(record_of(truth, white_noise(900, 0.4, 2)), 4)};
+  const DifferenceModel pooled = fit_pooled(factors);
+  const double tolerance = 1e-6 * largest(truth.denominator);
+  for (std::size_t i = 0; i <= 4; ++i) {
+    EXPECT_NEAR(pooled.numerator[i], truth.numerator[i], tolerance);
+    EXPECT_NEAR(pooled.denominator[i], truth.denominator[i], tolerance);
+  }
+  // One record alone is its own pool.
+  const Record record = record_of(truth, white_noise(400, 1.6, 3));
+  EXPECT_EQ(fit_pooled({factor_arx(record, 4)}).order(), 4);
+  EXPECT_NEAR(fit_pooled({factor_arx(record, 4)}).denominator[1],
+              least_squares(record, 4).denominator[1], tolerance);
+}
+
+TEST(ArxTest, RecordsOfAnotherOrderOrRateAreNotPooled) {
+  const Record record = record_of(body_like_model(), white_noise(400, 1.6, 1));
+  Record faster = record;
+  faster.rate_hz = 2.0 * record.rate_hz;
+  const ArxFactor first = factor_arx(record, 4);
+  EXPECT_THROW(fit_pooled({}), ConfigError);
+  EXPECT_THROW(fit_pooled({first, factor_arx(record, 3)}), ConfigError);
+  EXPECT_THROW(fit_pooled({first, factor_arx(faster, 4)}), ConfigError);
+  EXPECT_NO_THROW(fit_pooled({first, first}));
+}
+
 TEST(ArxTest, UselessRecordsAreRefusedWithTheReason) {
   const auto refusal = [](const Record& record) {
     return support::refusal([&] { fit_arx(record, 4); });

@@ -123,6 +123,15 @@ TEST(ReferenceSignalTest, WhatCannotBeSampledIsRefused) {
   EXPECT_NO_THROW(ReferenceSignal(reference_design(180.0), 1439, 1, 0.02));
   EXPECT_THROW(ReferenceSignal(reference_design(180.0), 0, 1, 0.02), ConfigError);
   EXPECT_THROW(ReferenceSignal(reference_design(180.0), 180'000, 1, std::nan("")), ConfigError);
+  // A constant, and the line at half the rate, whose sine is 0 at every sample.
+  ReferenceDesign constant = reference_design(180.0);
+  constant.harmonics.front() = 0;
+  EXPECT_THROW(ReferenceSignal(constant, 180'000, 1, 0.02), ConfigError);
+  ReferenceDesign alternating = reference_design(180.0);
+  alternating.harmonics.back() = 90'000;
+  EXPECT_THROW(ReferenceSignal(alternating, 180'000, 1, 0.02), ConfigError);
+  alternating.harmonics.back() = 89'999;
+  EXPECT_NO_THROW(ReferenceSignal(alternating, 180'000, 1, 0.02));
 }
 
 }  // namespace
