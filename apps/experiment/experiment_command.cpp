@@ -17,6 +17,7 @@
 #include "apps/experiment/report_command.hpp"
 #include "apps/experiment/status.hpp"
 #include "apps/experiment/unblind.hpp"
+#include "apps/libraries/experiment/core/counterbalance.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/text/text.hpp"
@@ -80,6 +81,13 @@ void make(Typed typed) {
   make_folder(typed.folder, typed.design, typed.seed ? *typed.seed : random_seed());
   if (const std::string file = typed.design.model_file(); !file.empty()) {
     std::filesystem::copy_file(typed.control_model, typed.folder / file);
+  }
+  const auto round =
+      static_cast<std::int64_t>(round_of(typed.design.order, typed.design.conditions.size()));
+  if (typed.design.participants % round != 0) {
+    runtime::remark(fmt::format("orders of {} participants are not balanced: those of {} are",
+                                typed.design.participants,
+                                (typed.design.participants / round + 1) * round));
   }
   std::printf("%s: read it, change it, then `stillhand experiment run %s`\n",
               (typed.folder / kDesignFile).c_str(), typed.folder.c_str());

@@ -2,6 +2,7 @@
 #include "apps/study/recorded_subjects.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -83,11 +84,16 @@ std::vector<Person> people_of(const std::vector<SessionFile>& files, double leas
   return out;
 }
 
+// The first reason alone may be that of one person where the others lack something else.
 void refuse_nobody(const Selection& selection, const std::vector<std::string>& why) {
+  constexpr std::size_t kMostReasons = 6;
   if (!selection.results.empty()) return;
+  const std::size_t shown = std::min(why.size(), kMostReasons);
+  std::string reasons = fmt::format("{}", fmt::join(why.begin(), why.begin() + shown, "; "));
+  if (shown < why.size()) reasons += fmt::format("; and {} more", why.size() - shown);
   throw ConfigError(
       "--sessions",
-      "no complete participant (" + (why.empty() ? "no tracking trial" : why.front()) + ")",
+      "no complete participant (" + (why.empty() ? "no tracking trial" : reasons) + ")",
       "a pegged trial and the same conditions for each participant");
 }
 

@@ -86,6 +86,14 @@ void set_tracking_motion(PlannedTrial& planned, const ProtocolOptions& options) 
 
 }  // namespace
 
+bool drives_motor(const PlannedTrial& planned) {
+  return planned.cancellation || cancellation::drives_motor(planned.parts);
+}
+
+bool opposes_feedthrough(const PlannedTrial& planned) {
+  return planned.cancellation || cancellation::opposes_feedthrough(planned.parts);
+}
+
 std::string check_seed(const std::string& word) {
   std::int64_t seed = -1;
   const char* end = word.data() + word.size();

@@ -50,6 +50,11 @@ struct PlannedTrial {
       parts;  ///< of a mitigation in place of cancellation; over the bus
 };
 
+/// By cancellation or by another mitigation.
+bool drives_motor(const PlannedTrial& planned);
+/// A prediction of the feedthrough alone drives the motor.
+bool opposes_feedthrough(const PlannedTrial& planned);
+
 /// For CLI11: the error in the word of a --seed, or an empty text.  (CLI11 itself would take a
 /// number that is too large for the largest one.)
 std::string check_seed(const std::string& word);

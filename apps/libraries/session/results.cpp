@@ -17,16 +17,6 @@
 namespace stillhand::session {
 namespace {
 
-// By cancellation or by another mitigation.
-bool drives_motor(const PlannedTrial& planned) {
-  return planned.cancellation || cancellation::drives_motor(planned.parts);
-}
-
-// A prediction of the feedthrough alone drives it.
-bool opposes_feedthrough(const PlannedTrial& planned) {
-  return planned.cancellation || cancellation::opposes_feedthrough(planned.parts);
-}
-
 // The position's model has no number in the motor commands.  The canceller takes the newest, and a
 // mitigation that was made before the trial keeps its own.
 TrialResult::Models models_of(const SessionRecording& session, const PlannedTrial& planned) {

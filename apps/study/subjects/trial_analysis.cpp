@@ -55,8 +55,10 @@ TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial&
   thin(out.metrics.moving_rms_mm, record.rate_hz);
   thin(out.metrics.moving_dwell, record.rate_hz);
   out.cancelled_share = out.counterforce_delay_s = 0.0;
-  if (planned.cancellation) {
+  if (session::drives_motor(planned)) {
     out.cancelled_share = session::cancelled_share(signals.feedthrough_n, signals.motor_n);
+  }
+  if (session::opposes_feedthrough(planned)) {
     out.counterforce_delay_s =
         session::counterforce_delay_s(signals.feedthrough_n, signals.motor_n, record.rate_hz);
   }
