@@ -30,7 +30,7 @@ struct Passed {
   double bound_rad;
   Tick since = 0;
 
-  void step(const GrowingOscillation& stick, Tick tick) {
+  void step(const signal::GrowingOscillation& stick, Tick tick) {
     if (stick.amplitude_rad() >= bound_rad) {
       if (since == 0) since = tick;
     } else if (stick.last_amplitude_rad() < bound_rad) {

@@ -21,7 +21,7 @@ cancellation::Part chosen_of(const cancellation::Part& part, const Ingredients& 
       // Without stiffness it is a damper; one of half the table's damping keeps to half.
       if (part.values[0] == 0.0) {
         const double share = part.values[1] / row_of(kDamping).parts.front().values[1];
-        return {part.kind, {0.0, share * chosen.damping_n_s_m, 0.0}};
+        return {part.kind, {0.0, share * chosen.damping_n_s_m, part.values[2]}};
       }
       const cancellation::ImpedanceConfig& shaped = chosen.impedance.impedance;
       return {part.kind, {shaped.stiffness_n_m, shaped.damping_n_s_m, shaped.mass_kg}};

@@ -61,7 +61,7 @@ struct ImpedanceBounds {
   double passive_to_hz = 10.0;     ///< above what reflexes follow
   double most_stiffness = 1500.0;  ///< [N/m]
   double most_damping = 60.0;      ///< [N s/m]
-  double most_mass = 1.0;          ///< [kg]
+  double most_mass = 0.8;          ///< [kg]
 };
 
 /// Shaped stick, METHOD Eq. MI-8: K, B, M of Eq. MI-2 with the least worst case

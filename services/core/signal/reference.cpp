@@ -8,6 +8,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/units.hpp"
 #include "services/core/signal/random.hpp"
+#include "services/core/signal/rotation_block.hpp"
 
 namespace stillhand::signal {
 namespace {
@@ -18,12 +19,6 @@ constexpr std::array<std::int64_t, kReferenceLines> kPaperMultiples{
 // Stream of the phases under the trial's seed.
 constexpr std::uint64_t kPhaseStream = 0x5265666572656e63;
 constexpr Tick kMaxDuration_ticks = 3'600'000;
-// Samples of a block that share one rotation; near the square root of the period, where the fewest
-// sines are drawn.
-std::size_t block_of(std::size_t count) {
-  return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
-}
-
 bool is_prime(std::int64_t n) {
   if (n < 2) return false;
   for (std::int64_t d = 2; d * d <= n; ++d) {
@@ -71,7 +66,7 @@ void add_line(std::vector<double>& table, std::int64_t harmonic, double phase_ra
     const std::size_t cycles = static_cast<std::size_t>(harmonic) * n % count;
     return kTwoPi * (static_cast<double>(cycles) / static_cast<double>(count));
   };
-  const std::size_t block = block_of(count);
+  const std::size_t block = rotation_block(count);
   std::vector<double> sines(block);
   std::vector<double> cosines(block);
   for (std::size_t r = 0; r < block; ++r) {

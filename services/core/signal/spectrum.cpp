@@ -10,6 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/units.hpp"
+#include "services/core/signal/rotation_block.hpp"
 
 namespace stillhand::signal {
 namespace {
@@ -18,11 +19,6 @@ namespace {
 constexpr double kNormal95 = 1.959963984540054;
 
 using Complex = std::complex<double>;
-
-// Samples that share one rotation: near the square root of the record the fewest sines are drawn.
-std::size_t block_of(std::size_t count) {
-  return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
-}
 
 // Periodic Hann window: sums of it and of its square over the segment are exactly L/2 and 3L/8.
 std::vector<double> hann(std::size_t length) {
@@ -131,7 +127,7 @@ Complex line_at(const std::vector<double>& x, std::int64_t cycles_in_record) {
                       "0 < k < " + std::to_string((count + 1) / 2) + " (Nyquist)");
   }
   // Rotations within a block are tabulated; a block's own rotation is applied to its sum.
-  const std::size_t block = block_of(count);
+  const std::size_t block = rotation_block(count);
   const auto rotation = [&](std::size_t n) {
     const std::size_t cycles = static_cast<std::size_t>(cycles_in_record) * n % count;
     const double angle_rad = kTwoPi * (static_cast<double>(cycles) / static_cast<double>(count));

@@ -8,7 +8,7 @@
 #include "services/core/motion/motion_trajectory.hpp"
 #include "services/core/motion/platform_command.hpp"
 #include "services/core/motion/platform_guard.hpp"
-#include "services/core/vehicle/growing_oscillation.hpp"
+#include "services/core/signal/growing_oscillation.hpp"
 #include "services/core/vehicle/vehicle.hpp"
 
 namespace stillhand::vehicle {
@@ -20,7 +20,7 @@ inline constexpr std::string_view kDrivenEvent = "the stick drives the platform 
 struct DrivenConfig {
   motion::PlatformLimits limits;  ///< of motion.yaml
   VehicleConfig vehicle;
-  OscillationLimits oscillation;
+  signal::OscillationLimits oscillation;
 };
 
 /// The stick at one tick of the sample clock.
@@ -59,14 +59,16 @@ class DrivenMotion {
 
   /// The drive was ended by the detector.
   [[nodiscard]] bool ended() const noexcept { return ended_; }
-  [[nodiscard]] const GrowingOscillation& oscillation() const noexcept { return oscillation_; }
+  [[nodiscard]] const signal::GrowingOscillation& oscillation() const noexcept {
+    return oscillation_;
+  }
 
  private:
   [[nodiscard]] double share(Tick tick) const noexcept;
 
   motion::PlatformGuard guard_;
   Vehicle vehicle_;
-  GrowingOscillation oscillation_;
+  signal::GrowingOscillation oscillation_;
   motion::MotionTrajectory trajectory_;
   Trial trial_;
   bool driven_ = false;

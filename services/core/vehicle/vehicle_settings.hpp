@@ -11,7 +11,7 @@ namespace stillhand::vehicle {
 /// vehicle.yaml: what the process reads besides the platform's limits, which are motion.yaml's.
 struct VehicleSettings {
   VehicleConfig vehicle;
-  OscillationLimits oscillation;
+  signal::OscillationLimits oscillation;
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {

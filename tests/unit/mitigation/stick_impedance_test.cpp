@@ -4,11 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <memory>
 #include <numbers>
 
+#include "services/core/cancellation/parts/part_step.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/core/signal/butterworth.hpp"
 
 namespace stillhand::cancellation::stick_impedance_test {
 
@@ -46,7 +50,58 @@ TEST(StickImpedanceTest, RefusesWhatGivesEnergy) {
   EXPECT_THROW(StickImpedance({.damping_n_s_m = -1.0}), ConfigError);
   EXPECT_THROW(StickImpedance({.stiffness_n_m = -1.0}), ConfigError);
   EXPECT_THROW(StickImpedance({.mass_kg = NAN}), ConfigError);
+  EXPECT_THROW(StickImpedance({.mass_kg = -0.1}), ConfigError);
+  EXPECT_THROW(StickImpedance({.mass_kg = 0.9}), ConfigError);
   EXPECT_THROW(StickImpedance({.lever_m = 0.0}), ConfigError);
+}
+
+// A stick of 0.25 kg and 0.5 N s/m that somebody has let go, 5 mm off its middle and moving, behind
+// the rate filter of 30 Hz and the motor's lag of 1.5 ms; the motor is bounded.
+struct FreeStick {
+  explicit FreeStick(double damping_n_s_m)
+      : part(make_impedance({PartKind::kImpedance, {0.0, damping_n_s_m, 0.0}})) {}
+
+  // Runs for so long, pushed by a force from outside [N]; returns the largest motor force [N] of
+  // the last second.
+  template <typename Push>
+  double largest_n(double seconds, Push push) {
+    constexpr double kMass_kg = 0.25, kDamping_n_s_m = 0.5, kLag_s = 0.0015, kMost_n = 10.0;
+    double largest = 0.0;
+    const auto ticks = static_cast<int>(1e3 * seconds);
+    for (int n = 0; n < ticks; ++n, ++tick) {
+      const double omega = rate.step(v_m_s / 0.10);
+      const double wanted_n = std::clamp(
+          part->force_n({0.0, x_m / 0.10, omega, 0.0, motor_n, tick, trial}), -kMost_n, kMost_n);
+      if (n >= ticks - 1000) largest = std::max(largest, std::abs(wanted_n));
+      for (int i = 0; i < 10; ++i) {
+        motor_n += 1e-4 / kLag_s * (wanted_n - motor_n);
+        v_m_s += 1e-4 / kMass_kg * (motor_n + push(n) - kDamping_n_s_m * v_m_s);
+        x_m += 1e-4 * v_m_s;
+      }
+    }
+    return largest;
+  }
+
+  Trial trial{};
+  std::unique_ptr<PartStep> part;
+  signal::Butterworth rate{2, 30.0, kControlRateHz};
+  double x_m = 0.005, v_m_s = 0.1, motor_n = 0.0;
+  Tick tick = 0;
+};
+
+double slow_push(int n) { return 2.0 * std::sin(2.0 * std::numbers::pi * 1.0 * n * 1e-3); }
+
+TEST(StickImpedanceTest, AStickThatIsLetGoIsPushedNoMore) {
+  FreeStick sut(90.0);
+  EXPECT_EQ(sut.largest_n(4.0, [](int) { return 0.0; }), 0.0);
+  // Nor when it is taken again.
+  EXPECT_EQ(sut.largest_n(2.0, slow_push), 0.0);
+}
+
+TEST(StickImpedanceTest, AStableDamperGoesOn) {
+  FreeStick sut(30.0);
+  sut.largest_n(4.0, [](int) { return 0.0; });
+  EXPECT_GT(sut.largest_n(2.0, slow_push), 1.0);
 }
 
 }  // namespace stillhand::cancellation::stick_impedance_test

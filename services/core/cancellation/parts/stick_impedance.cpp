@@ -23,7 +23,8 @@ StickImpedance::StickImpedance(const ImpedanceConfig& config) : config_(config) 
        config.stiffness_n_m, "0 to 5000 N/m");
   need(config.damping_n_s_m >= 0.0 && config.damping_n_s_m <= 200.0, "impedance.damping_n_s_m",
        config.damping_n_s_m, "0 to 200 N s/m");
-  need(std::abs(config.mass_kg) <= 2.0, "impedance.mass_kg", config.mass_kg, "-2 to 2 kg");
+  need(config.mass_kg >= 0.0 && config.mass_kg <= 0.8, "impedance.mass_kg", config.mass_kg,
+       "0 to 0.8 kg: a stick that nobody holds oscillates with 1.1");
   need(config.lever_m > 0.0 && config.lever_m <= 1.0, "impedance.lever_m", config.lever_m,
        "above 0, at most 1 m");
 }
@@ -43,11 +44,13 @@ class ImpedanceStep : public StepOf<ImpedanceStep> {
  public:
   explicit ImpedanceStep(const ImpedanceConfig& config) : impedance_(config) {}
   double force_n(const Moment& now) noexcept override {
-    return impedance_.step(now.theta_rad, now.omega_rad_s);
+    const double wanted_n = impedance_.step(now.theta_rad, now.omega_rad_s);
+    return oscillation_.step(now.theta_rad) ? 0.0 : wanted_n;
   }
 
  private:
   StickImpedance impedance_;
+  signal::GrowingOscillation oscillation_{kOscillation};
 };
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/vehicle/growing_oscillation.hpp"
+#include "services/core/signal/growing_oscillation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::vehicle {
+namespace stillhand::signal {
 namespace {
 
 // A change of sign counts where |y| has passed this: the encoder has steps of 1.5 mrad.
@@ -15,13 +15,13 @@ constexpr double kHysteresis_rad = 0.002;
 constexpr int kOrder = 2;
 
 const OscillationLimits& validated(const OscillationLimits& limits) {
-  validate(limits, "vehicle.oscillation");
+  validate(limits, "oscillation");
   if (!(limits.floor_rad <= limits.ceiling_rad)) {
-    throw ConfigError("vehicle.oscillation.floor_rad", std::to_string(limits.floor_rad),
+    throw ConfigError("oscillation.floor_rad", std::to_string(limits.floor_rad),
                       "at most ceiling_rad, " + std::to_string(limits.ceiling_rad));
   }
   if (!(limits.low_hz < limits.high_hz)) {
-    throw ConfigError("vehicle.oscillation.low_hz", std::to_string(limits.low_hz),
+    throw ConfigError("oscillation.low_hz", std::to_string(limits.low_hz),
                       "less than high_hz, " + std::to_string(limits.high_hz));
   }
   return limits;
@@ -33,7 +33,7 @@ Tick half_period(double frequency_hz) noexcept { return ticks_in(0.5 / frequency
 
 GrowingOscillation::GrowingOscillation(const OscillationLimits& limits)
     : limits_(validated(limits)),
-      high_pass_(kOrder, 0.5 * limits.low_hz, kControlRateHz, signal::Passband::kHigh),
+      high_pass_(kOrder, 0.5 * limits.low_hz, kControlRateHz, Passband::kHigh),
       low_pass_(kOrder, 4.0 * limits.high_hz, kControlRateHz),
       longest_(half_period(limits.low_hz)),
       shortest_(half_period(limits.high_hz)) {}
@@ -101,4 +101,4 @@ bool GrowingOscillation::step(double theta_rad) noexcept {
   return found_;
 }
 
-}  // namespace stillhand::vehicle
+}  // namespace stillhand::signal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/core/vehicle/growing_oscillation.hpp"
+#include "services/core/signal/growing_oscillation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "services/core/signal/random.hpp"
 #include "services/core/signal/second_order_lag.hpp"
 
-namespace stillhand::vehicle {
+namespace stillhand::signal {
 namespace {
 
 struct Found {
@@ -28,7 +28,7 @@ struct Found {
 Found run(double frequency_hz, double growth, double bound_rad, std::uint64_t seed) {
   constexpr double kStep_rad = kTwoPi / 4096.0;
   GrowingOscillation sut{OscillationLimits{}};
-  signal::Gaussian normal(seed, 0);
+  Gaussian normal(seed, 0);
   const double phase = kTwoPi * normal.uniform();
   Found found;
   double amplitude = 0.001;
@@ -102,7 +102,7 @@ TEST(GrowingOscillationTest, SteeringBelowTheBandIsNone) {
 }
 
 TEST(GrowingOscillationTest, NothingThatAStickReportsBreaksIt) {
-  signal::Gaussian normal(5, 0);
+  Gaussian normal(5, 0);
   GrowingOscillation sut{OscillationLimits{}};
   for (int n = 0; n < 200'000; ++n) {
     double theta = 1e3 * normal();
@@ -124,8 +124,8 @@ TEST(GrowingOscillationTest, NothingThatAStickReportsBreaksIt) {
 TEST(GrowingOscillationTest, FalseAlarmsOfAStableLoopAreRare) {
   const OscillationLimits limits;
   const auto alarms = [&](double damping, double rms_rad) {
-    signal::Gaussian normal(11, static_cast<std::uint64_t>(1000.0 * damping));
-    signal::SecondOrderLag loop(kTwoPi * 2.5, damping, kControlPeriod_s);
+    Gaussian normal(11, static_cast<std::uint64_t>(1000.0 * damping));
+    SecondOrderLag loop(kTwoPi * 2.5, damping, kControlPeriod_s);
     // RMS of the lag under white noise: sigma^2 w dt / (4 z).
     const double sigma = rms_rad / std::sqrt(kTwoPi * 2.5 * kControlPeriod_s / (4.0 * damping));
     GrowingOscillation sut{limits};
@@ -157,4 +157,4 @@ TEST(GrowingOscillationTest, AFloorAboveTheCeilingIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::vehicle
+}  // namespace stillhand::signal

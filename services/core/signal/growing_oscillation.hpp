@@ -8,9 +8,9 @@
 #include "services/core/contract/tick.hpp"
 #include "services/core/signal/butterworth.hpp"
 
-namespace stillhand::vehicle {
+namespace stillhand::signal {
 
-/// When an oscillation of the stick ends the drive.
+/// When an oscillation of the stick ends what drives it: a vehicle, or a part of the motor.
 struct OscillationLimits {
   double low_hz = 0.7;
   double high_hz = 10.0;
@@ -21,7 +21,7 @@ struct OscillationLimits {
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
-    visit("low_hz", self.low_hz, Range{0.3, 5.0},
+    visit("low_hz", self.low_hz, Range{0.3, 20.0},
           "[Hz] slowest oscillation that is looked for; own choice, above a person's steering");
     visit("high_hz", self.high_hz, Range{2.0, 40.0},
           "[Hz] fastest; own choice, above the resonances of arm and stick");
@@ -37,9 +37,9 @@ struct OscillationLimits {
   }
 };
 
-/// Detects a growing oscillation of the stick, METHOD Eq. VH-6 to VH-8, and stays with its finding
-/// until reset().  y is the stick behind a band-pass; a half wave lasts from one change of sign to
-/// the next, and p_k is its largest |y|, p_0 that of the one that goes on:
+/// Detects a growing oscillation of the stick, Eq. VH-6 to VH-8 (processes/vehicle), and stays with
+/// its finding until reset().  y is the stick behind a band-pass; a half wave lasts from one change
+/// of sign to the next, and p_k is its largest |y|, p_0 that of the one that goes on:
 ///
 ///   regular:   longest / shortest of the last three half waves <= regularity, each in the band
 ///   growing:   regular, p_0 >= floor,  p_k >= growth p_(k+1) for k = 0, 1, 2        (VH-7)
@@ -80,8 +80,8 @@ class GrowingOscillation {
   void next_half_wave() noexcept;
 
   OscillationLimits limits_;
-  signal::Butterworth high_pass_;
-  signal::Butterworth low_pass_;
+  Butterworth high_pass_;
+  Butterworth low_pass_;
   std::array<HalfWave, 3> past_{};  ///< newest first
   HalfWave now_;
   Tick longest_;
@@ -94,4 +94,4 @@ class GrowingOscillation {
   double frequency_hz_ = 0.0;
 };
 
-}  // namespace stillhand::vehicle
+}  // namespace stillhand::signal
