@@ -116,11 +116,14 @@ def print_sizes(rows, found, right):
 
 
 def print_limits(rows):
-    """How often an effect is found that is smaller or larger than the kind's own planted limit says."""
+    """How often an effect is found that is smaller or larger than the kind's own planted limit says.
+
+    A kind that the model has already is hardly ever found once more, so its limit is infinite: it is left out.
+    """
     print("\n| size over what the verdict quotes for its kind | found |\n| --- | --- |")
     edges = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0, math.inf)
     for low, high in zip(edges, edges[1:]):
-        own = [row for row in rows if row["half_over_noise"] > 0.0
+        own = [row for row in rows if 0.0 < row["half_over_noise"] < math.inf
                and low <= row["size_over_noise"] / row["half_over_noise"] < high]
         if own:
             print(f"| {low:g} to {high:g} | {share(sum(bool(row['found']) for row in own), len(own))} |")
