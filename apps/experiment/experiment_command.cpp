@@ -84,7 +84,8 @@ void make(Typed typed) {
   }
   const auto round =
       static_cast<std::int64_t>(round_of(typed.design.order, typed.design.conditions.size()));
-  if (typed.design.participants % round != 0) {
+  // Each pass of a person is another row of the square.
+  if (typed.design.participants * typed.design.blocks * typed.design.trials % round != 0) {
     runtime::remark(fmt::format("orders of {} participants are not balanced: those of {} are",
                                 typed.design.participants,
                                 (typed.design.participants / round + 1) * round));

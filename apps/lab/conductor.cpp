@@ -286,6 +286,13 @@ Asked Conductor::asked() {
   return seen_.requests.take_asked();
 }
 
+bool Conductor::was_late(const TrialResult& result) {
+  const std::lock_guard lock(mutex_);
+  return seen_.requests.emergency().empty() &&
+         std::ranges::find(result.events, EventKind::kInterlockOpened, &EventSeen::kind) !=
+             result.events.end();
+}
+
 session::TrialOutcome Conductor::run(const session::PlannedTrial& planned) {
   planned_ = planned;
   TrialRun trial(planned.trial, roster_, trouble_);
@@ -299,7 +306,7 @@ session::TrialOutcome Conductor::run(const session::PlannedTrial& planned) {
   outcome.completed = result.completed;
   outcome.stopped = result.stopped;
   outcome.aborted = result.aborted;
-  if (!outcome.completed && !outcome.stopped) {
+  if (!outcome.completed && !outcome.stopped && was_late(result)) {
     outcome.aborted += of_full_processors(processors.step());
   }
   for (const EventSeen& event : result.events) session::add_mark(outcome.marks, mark_of(event));

@@ -23,6 +23,8 @@
 
 namespace stillhand::lab {
 
+struct TrialResult;
+
 /// A process of the session refused what the user gave it; the text is the process's own line.
 /// Exit status 2.
 class RefusedByProcess : public std::runtime_error {
@@ -94,6 +96,8 @@ class Conductor {
   /// Steps the stage until it is over.
   void run_stage(Stage& stage, bool with_peers = false);
   void look(bool with_peers);
+  /// The interlock opened, and nobody asked for it.
+  bool was_late(const TrialResult& result);
   /// What the watch on the model has found since the last call.
   void say_model_changes();
   /// Announces who writes for each process, once.

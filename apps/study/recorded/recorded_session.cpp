@@ -118,6 +118,9 @@ TrackedTrial tracked_from(const SessionRecording& recorded, const SessionTrial& 
   session::PlannedTrial planned{};
   planned.trial = found.trial;
   planned.cancellation = found.letter == 'C';
+  if (!found.named.empty()) {  // a mitigation; read_recorded_session() knows it
+    planned.parts = session::row_of(*session::condition_named(found.named)).parts;
+  }
   return evaluated(signals, planned);
 }
 

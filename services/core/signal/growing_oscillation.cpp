@@ -15,7 +15,6 @@ constexpr double kHysteresis_rad = 0.002;
 constexpr int kOrder = 2;
 
 const OscillationLimits& validated(const OscillationLimits& limits) {
-  validate(limits, "oscillation");
   if (!(limits.floor_rad <= limits.ceiling_rad)) {
     throw ConfigError("oscillation.floor_rad", std::to_string(limits.floor_rad),
                       "at most ceiling_rad, " + std::to_string(limits.ceiling_rad));

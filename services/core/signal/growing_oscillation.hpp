@@ -21,7 +21,7 @@ struct OscillationLimits {
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
-    visit("low_hz", self.low_hz, Range{0.3, 20.0},
+    visit("low_hz", self.low_hz, Range{0.3, 5.0},
           "[Hz] slowest oscillation that is looked for; own choice, above a person's steering");
     visit("high_hz", self.high_hz, Range{2.0, 40.0},
           "[Hz] fastest; own choice, above the resonances of arm and stick");
@@ -51,8 +51,7 @@ struct OscillationLimits {
 /// allocation after construction; one thread.
 class GrowingOscillation {
  public:
-  /// @throws stillhand::ConfigError when a field is out of range, or floor or low_hz not below
-  ///         ceiling or high_hz.
+  /// @throws stillhand::ConfigError when floor or low_hz is not below ceiling or high_hz.
   explicit GrowingOscillation(const OscillationLimits& limits);
 
   /// One tick.  @return true from the tick of the finding on

@@ -8,7 +8,9 @@
 namespace stillhand::vehicle {
 
 DrivenMotion::DrivenMotion(const DrivenConfig& config)
-    : guard_(config.limits), vehicle_(config.vehicle), oscillation_(config.oscillation) {}
+    : guard_(config.limits), vehicle_(config.vehicle), oscillation_(config.oscillation) {
+  validate(config.oscillation, "vehicle.oscillation");
+}
 
 void DrivenMotion::arm(motion::MotionTrajectory&& trajectory, const Trial& trial,
                        bool driven) noexcept {

@@ -25,7 +25,7 @@ double theta_rad(Tick tick) {
   return 0.05 * std::sin(kTurn * 0.4e-3 * static_cast<double>(tick)) + 0.08;
 }
 
-const std::vector<Part> kSpring{{PartKind::kImpedance, {400.0, 0.0, 0.0}}};
+const std::vector<Part> kSpring{{PartKind::kImpedance, {400.0, 1.0, 0.0}}};
 const std::vector<Part> kSignal{{PartKind::kSignal}};
 const signal::DifferenceModel kPosition{1000.0, {-0.003}, {1.0}};
 
@@ -185,7 +185,7 @@ TEST_F(TrialPartsTest, AReusedTrialNumberRunsNothingOfBefore) {
   ASSERT_TRUE(support::eventually([this] { return !refusals().empty(); }));
   EXPECT_EQ(readiness(), Readiness::kNoMitigation);
   while (tick_ < trial_.start_tick + 500) ASSERT_EQ(step().trial, 0);
-  announce(1, {{PartKind::kImpedance, {800.0, 0.0, 0.0}}});
+  announce(1, {{PartKind::kImpedance, {800.0, 2.0, 0.0}}});
   ASSERT_TRUE(taken());
   EXPECT_EQ(readiness(), Readiness::kArmed);
   // -K x of the new spring in full effect.

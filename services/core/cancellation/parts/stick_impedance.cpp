@@ -21,6 +21,11 @@ void need(bool good, const char* key, double got, const char* want) {
 StickImpedance::StickImpedance(const ImpedanceConfig& config) : config_(config) {
   need(config.stiffness_n_m >= 0.0 && config.stiffness_n_m <= 5000.0, "impedance.stiffness_n_m",
        config.stiffness_n_m, "0 to 5000 N/m");
+  // The delay of hold and motor takes K tau off the damping of the stick, 0.5 N s/m, and the part.
+  constexpr double kDelay_s = 0.002, kStickDamping_n_s_m = 0.5;
+  need(config.stiffness_n_m * kDelay_s <= config.damping_n_s_m + kStickDamping_n_s_m,
+       "impedance.stiffness_n_m", config.stiffness_n_m,
+       "what the damping bears on a stick that nobody holds: 250 N/m, and 500 N/m for each N s/m");
   need(config.damping_n_s_m >= 0.0 && config.damping_n_s_m <= 200.0, "impedance.damping_n_s_m",
        config.damping_n_s_m, "0 to 200 N s/m");
   need(config.mass_kg >= 0.0 && config.mass_kg <= 0.8, "impedance.mass_kg", config.mass_kg,
@@ -45,6 +50,8 @@ class ImpedanceStep : public StepOf<ImpedanceStep> {
   explicit ImpedanceStep(const ImpedanceConfig& config) : impedance_(config) {}
   double force_n(const Moment& now) noexcept override {
     const double wanted_n = impedance_.step(now.theta_rad, now.omega_rad_s);
+    // While the motor rests, the stick's ringing is not the part's.
+    if (now.motor_n == 0.0 && !oscillation_.found()) oscillation_.reset();
     return oscillation_.step(now.theta_rad) ? 0.0 : wanted_n;
   }
 

@@ -17,11 +17,11 @@ struct ImpedanceConfig {
 /// counted angle without one is noise.
 inline constexpr double kInertiaCorner_hz = 10.0;
 
-/// What neither a person nor a platform does with the stick: 12 to 40 Hz, 0.6 mm at the hand and
+/// What neither a person nor a platform does with the stick: 8 to 40 Hz, 0.6 mm at the hand and
 /// growing, or 1 mm.  Own choice, above the 6 Hz of a road, and below the 1.6 mm by which a motor
 /// of 10 N shakes a free stick at 25 Hz.
 inline constexpr signal::OscillationLimits kOscillation{
-    .low_hz = 12.0, .high_hz = 40.0, .floor_rad = 0.006, .ceiling_rad = 0.01};
+    .low_hz = 8.0, .high_hz = 40.0, .floor_rad = 0.006, .ceiling_rad = 0.01};
 
 /// The motor as spring, damper and inertia on the stick, METHOD Eq. MI-2:
 ///
@@ -30,13 +30,15 @@ inline constexpr signal::OscillationLimits kOscillation{
 /// It needs no model of the person, and resists what the person wants as much as what shakes it.
 /// With the delay and the filter of a sampled loop it is passive only up to some frequency;
 /// passive_up_to_hz() of apps/study/mitigations/design.hpp states it.  A stick that nobody holds is
-/// lighter than that loop bears: from some 45 N s/m or 1.1 kg on it would oscillate at 18 to 29 Hz.
-/// The part ends its force for good when the stick does (kOscillation).  The force has no bound of
-/// its own: the envelope follows. Pure; step() never allocates or throws.
+/// lighter than that loop bears: from some 45 N s/m or 1.1 kg on it oscillates, at 13 Hz where the
+/// motor is at its bound.  make_impedance() ends the force for good when the stick does
+/// (kOscillation).  The force has no bound of its own: the envelope follows. Pure; step() never
+/// allocates or throws.
 class StickImpedance {
  public:
   /// @throws stillhand::ConfigError unless all are finite, K and B not negative, M from 0 to
-  ///         0.8 kg and the lever positive.
+  ///         0.8 kg, K no more than (B + 0.5 N s/m)/2 ms, which the loop's delay makes unstable on
+  ///         a free stick, and the lever positive.
   explicit StickImpedance(const ImpedanceConfig& config);
 
   /// @return the force wanted at the hand [N], + right
