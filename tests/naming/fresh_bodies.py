@@ -11,12 +11,14 @@ determined by the seed and its number.
     python3 tests/naming/fresh_bodies.py --count 60 --seed 1 --out DIR      # about 10 s of a processor a record
     python3 tests/naming/fresh_bodies.py --count 60 --sealed TRUTH --out DIR
 
-A sealed set has a seed that nobody chose or knows. DIR holds what a tool may read and seal.sha256, the digests of TRUTH,
-which stays with the judge until the entries are in.
+A sealed set has a seed that nobody chose or knows, and its records are shuffled. DIR holds what a tool may read and
+seal.sha256, the digests of TRUTH, which stays with the judge until the entries are in. The same with --seed, which is
+in the truth, makes the set again.
 """
 import argparse
 import hashlib
 import json
+import os
 import pathlib
 import secrets
 import sys
@@ -194,9 +196,10 @@ class Record:
         needed = {part for effect in self.effects for part in (effect.channel or "").split("*")}
         return [name for name in CHANNELS if name in ALWAYS or name in needed or self.random.random() < 0.75]
 
-    def write(self, folder, sealed=None):
-        """@param sealed  where the truth and the force of the test go, if not to the folder"""
-        name = f"rec_{self.number + 1:04d}"
+    def write(self, folder, sealed=None, place=None):
+        """@param sealed  where the truth and the force of the test go, if not to the folder
+        @param place  its number in the folder, if not its own"""
+        name = f"rec_{(self.number if place is None else place) + 1:04d}"
         kept = self.channels()
         (train, _), (test, free) = self.rows(0, kept), self.rows(1, kept)
         write_csv(folder / f"{name}_train.csv", train)
@@ -247,26 +250,31 @@ def write_seal(truth, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=60)
-    seed_of = parser.add_mutually_exclusive_group()
-    seed_of.add_argument("--seed", type=int, default=1)
-    seed_of.add_argument("--sealed", type=pathlib.Path, metavar="TRUTH", help="an empty folder for what a tool may not read")
+    parser.add_argument("--seed", type=int, help="default: 1; of a sealed set drawn")
+    parser.add_argument("--sealed", type=pathlib.Path, metavar="TRUTH",
+                        help="an empty folder for what a tool may not read")
     parser.add_argument("--out", type=pathlib.Path, required=True)
     words = parser.parse_args()
     for folder in filter(None, (words.out, words.sealed)):
         folder.mkdir(parents=True, exist_ok=True)
-    if words.sealed and any(any(folder.iterdir()) for folder in (words.out, words.sealed)):
+    if words.sealed and (any(any(folder.iterdir()) for folder in (words.out, words.sealed))
+                         or words.out.resolve() == words.sealed.resolve()):
         parser.error("a sealed set wants two empty folders")
-    seed = secrets.randbits(64) if words.sealed else words.seed
+    seed = words.seed if words.seed is not None else secrets.randbits(64) if words.sealed else 1
     deck = numpy.random.default_rng([seed, 1 << 20])
     known, outside = (list(deck.permutation(numpy.array(kinds, dtype=object)))
                       for kinds in (fresh_effects.KNOWN, fresh_effects.OUTSIDE))
-    for number in range(words.count):
-        record = Record(seed, number, known, outside)
-        record.write(words.out, words.sealed)
+    # A record's own number says whether it has an effect.
+    order = numpy.random.default_rng([seed, 1 << 21]).permutation(words.count) if words.sealed else range(words.count)
+    for place, number in enumerate(order):
+        record = Record(seed, int(number), known, outside)
+        record.write(words.out, words.sealed, place)
         what = "sealed" if words.sealed else ", ".join(effect.kind for effect in record.effects) or "no effect"
-        print(f"rec_{number + 1:04d}: {what}", flush=True)
+        print(f"rec_{place + 1:04d}: {what}", flush=True)
     if words.sealed:
         write_seal(words.sealed, words.out / "seal.sha256")
+        for path in words.out.iterdir():  # how long a record took says something of it
+            os.utime(path, (0, 0))
 
 
 if __name__ == "__main__":

@@ -6,10 +6,11 @@ Usage: again_after_standstill.py COMMAND [ARGUMENT]...
 
 A virtual machine can lose its processors for tenths of a second. A life sign that lasts 0.3 s is then lost, and a
 session under test ends as it must. A clock of its own on each core measures such standstills, whatever the test does.
-Without one, a failure counts at once: on a machine that keeps time, every failure counts.
+Without one, a failure counts at once, and so does a program that a signal ended.
 
-A test that failed in all three runs, and in each with a standstill, was not judged: it counts as skipped. So does one
-on a machine whose system calls are slow: such a machine cannot hold a loop of 1 kHz over a bus, since its real-time
+A test that failed in all three runs, and in each with a standstill, was not judged: it counts as skipped. That hides a
+defect that fills a core with real-time work, which stops the clocks as well. So does a test count as skipped on a
+machine whose system calls are slow: such a machine cannot hold a loop of 1 kHz over a bus, since its real-time
 processes need all of both cores, and the clocks stand still for as long as the kernel lets them.
 """
 import os
@@ -90,7 +91,7 @@ def main():
         return 0 if command else 2
     for turn in range(1, RUNS + 1):
         status, longest_s, spent = run(command)
-        if status in (0, CTEST_SKIPPED) or longest_s < STANDSTILL_S:
+        if status in (0, CTEST_SKIPPED) or status < 0 or longest_s < STANDSTILL_S:
             return status
         print(f"run {turn} failed with status {status}; the machine stood still for {longest_s:.2f} s meanwhile, "
               f"{spent}", flush=True)
