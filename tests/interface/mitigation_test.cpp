@@ -139,7 +139,7 @@ TEST_F(MitigationProcessTest, AModelThatCannotSettleBeforeTheTrialLeavesItUnmiti
 // A trial's number comes again with parts that are refused: the spring of before stays off.
 TEST_F(MitigationProcessTest, AReusedTrialNumberDoesNotRunTheMitigationOfBefore) {
   begin_session();
-  add_part(stillhand_msgs::PART_IMPEDANCE, {400.0, 0.0, 0.0});
+  add_part(stillhand_msgs::PART_IMPEDANCE, {400.0, 1.0, 0.0});
   const std::int32_t trial =
       begin_until([this] { return std::abs(newest_command().force_n()) > 0.5; }, kTrial, 500);
   ASSERT_GE(trial, kTrial);
@@ -163,7 +163,7 @@ TEST_F(MitigationProcessTest, AReusedTrialNumberDoesNotRunTheMitigationOfBefore)
 TEST_F(MitigationProcessTest, ConditionCBehindAMitigationIsTheCancellers) {
   begin_session();
   publish_force_model(-3.2);
-  add_part(stillhand_msgs::PART_IMPEDANCE, {400.0, 0.0, 0.0});
+  add_part(stillhand_msgs::PART_IMPEDANCE, {400.0, 1.0, 0.0});
   const std::int32_t mitigated =
       begin_until([this] { return std::abs(newest_command().force_n()) > 0.5; }, kTrial, 500);
   ASSERT_GE(mitigated, kTrial);
@@ -201,7 +201,7 @@ TEST_F(MitigationProcessTest, CancellerAndMitigationTakeTurnsWithoutAStep) {
   };
   const std::int32_t first = begin_until([&] { return pushes(10.0, false); }, 1, 20'000, true);
   ASSERT_GT(first, 0);
-  add_part(stillhand_msgs::PART_IMPEDANCE, {1000.0, 0.0, 0.0});
+  add_part(stillhand_msgs::PART_IMPEDANCE, {1000.0, 2.0, 0.0});
   const std::int32_t second = begin_until([&] { return pushes(4.0, true); }, first + 1, 20'000);
   ASSERT_GT(second, first);
   parts_.clear();
