@@ -288,7 +288,7 @@ Asked Conductor::asked() {
 
 bool Conductor::was_late(const TrialResult& result) {
   const std::lock_guard lock(mutex_);
-  return seen_.requests.emergency().empty() &&
+  return !seen_.interrupted && seen_.requests.emergency().empty() &&
          std::ranges::find(result.events, EventKind::kInterlockOpened, &EventSeen::kind) !=
              result.events.end();
 }
