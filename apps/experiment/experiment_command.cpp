@@ -84,8 +84,9 @@ void make(Typed typed) {
   }
   const auto round =
       static_cast<std::int64_t>(round_of(typed.design.order, typed.design.conditions.size()));
-  // Each pass of a person is another row of the square.
-  if (typed.design.participants * typed.design.blocks * typed.design.trials % round != 0) {
+  // Person and pass choose the row together, Eq. EX-3: all rows of one or of the other balance it.
+  const std::int64_t passes = typed.design.blocks * typed.design.trials;
+  if (typed.design.participants % round != 0 && passes % round != 0) {
     runtime::remark(fmt::format("orders of {} participants are not balanced: those of {} are",
                                 typed.design.participants,
                                 (typed.design.participants / round + 1) * round));

@@ -9,9 +9,9 @@ session under test ends as it must. A clock of its own on each core measures suc
 Without one, a failure counts at once, and so does a program that a signal ended.
 
 A test that failed in all three runs, and in each with a standstill, was not judged: it counts as skipped. That hides a
-defect that fills a core with real-time work, which stops the clocks as well. So does a test count as skipped on a
-machine whose system calls are slow: such a machine cannot hold a loop of 1 kHz over a bus, since its real-time
-processes need all of both cores, and the clocks stand still for as long as the kernel lets them.
+defect that fills a core with real-time work, which stops the clocks as well. A machine whose system calls are slow
+skips the test after one such run: it cannot hold a loop of 1 kHz over a bus, since its real-time processes need all of
+both cores, and the clocks stand still for as long as the kernel lets them.
 """
 import os
 import subprocess

@@ -7,10 +7,20 @@
 
 namespace stillhand::vehicle {
 
-DrivenMotion::DrivenMotion(const DrivenConfig& config)
-    : guard_(config.limits), vehicle_(config.vehicle), oscillation_(config.oscillation) {
-  validate(config.oscillation, "vehicle.oscillation");
+namespace {
+
+// Before the detector's filters are made of it.
+const signal::OscillationLimits& validated(const signal::OscillationLimits& limits) {
+  validate(limits, "vehicle.oscillation");
+  return limits;
 }
+
+}  // namespace
+
+DrivenMotion::DrivenMotion(const DrivenConfig& config)
+    : guard_(config.limits),
+      vehicle_(config.vehicle),
+      oscillation_(validated(config.oscillation)) {}
 
 void DrivenMotion::arm(motion::MotionTrajectory&& trajectory, const Trial& trial,
                        bool driven) noexcept {

@@ -37,8 +37,8 @@ inline constexpr signal::OscillationLimits kOscillation{
 class StickImpedance {
  public:
   /// @throws stillhand::ConfigError unless all are finite, K and B not negative, M from 0 to
-  ///         0.8 kg, K no more than (B + 0.5 N s/m)/2 ms, which the loop's delay makes unstable on
-  ///         a free stick, and the lever positive.
+  ///         0.8 kg, K at most (B + 0.5 N s/m)/2 ms, and the lever positive.  The loop's delay
+  ///         makes a free stick with a stiffer spring unstable.
   explicit StickImpedance(const ImpedanceConfig& config);
 
   /// @return the force wanted at the hand [N], + right
