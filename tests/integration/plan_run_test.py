@@ -30,7 +30,7 @@ def tied_recording(file):
         t = n / RATE_HZ
         a_x, a_y = 0.4 * sideways(t), 0.5 * motion(t)
         force += (2.0 * a_y - force) / (0.05 * RATE_HZ)  # a lag of 0.05 s
-        lines.append(f"{t:.3f},{a_x:.6f},{a_y:.6f},{0.3 * a_x:.8f},0,0,0,{force + a_x + noise.gauss(0.0, 0.05):.6f},0")
+        lines.append(f"{t:.3f},{a_x:.6f},{a_y:.6f},{0.3 * a_x:.8f},0,0,0,{force + a_x + noise.gauss(0.0, 0.2):.6f},0")
     file.write_text("\n".join(lines) + "\n")
 
 
@@ -43,8 +43,8 @@ class PlanRunTest(LabTestCase):
         # Other laws of one of the two may be tied with them.
         names = [f"{each['kind']} (of {each['channel']}, {each['form']})" for each in planned["candidates"]]
         self.assertLessEqual(set(TIED), set(names))
-        # Both move as they do whatever the platform does: what is left is how far either fit has converged.
-        self.assertLess(planned["probability_settled"], 0.5)
+        # Both move as they do whatever the platform does.
+        self.assertLess(planned["probability_settled"], 0.02)
         self.assertIn("a second axis", said)
 
         lab = self.lab("--plan", plan)

@@ -11,6 +11,7 @@
 #include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/signal/decompositions.hpp"
 
 namespace stillhand::next_run {
@@ -26,6 +27,7 @@ using Eigen::VectorXd;
 constexpr double kBlock_s = 2.0;         // longer than the body's memory, Eq. DG-11
 constexpr double kUndetermined = 1e-10;  // of the largest eigenvalue, Eq. DG-70
 constexpr double kNeverFits = 1e12;      // [-] a run that is not finite
+constexpr double kAsGood = 1.0;          // [-] evidence, Eq. NR-13
 
 // The inverse where the data determine it, nothing elsewhere.
 MatrixXd inverse(const MatrixXd& squares) {
@@ -40,21 +42,28 @@ MatrixXd inverse(const MatrixXd& squares) {
   return root * inverted.asDiagonal() * root.transpose();
 }
 
-// Places of the numbers of an effect that a further recording does not share, in packed()'s order.
-std::vector<Index> own_numbers(const Model& model) {
+// Places of the numbers of the effects that are so, in packed()'s order.
+template <typename Predicate>
+std::vector<Index> numbers_of(const Model& model, const Predicate& is_so) {
   Model bare = model;
   bare.effects.clear();
   Index next = diagnosis::packed(bare).size();
-  std::vector<Index> own;
+  std::vector<Index> places;
   for (const diagnosis::Effect& effect : model.effects) {
     const Index end = next + std::ssize(effect.coefficients) +
                       std::ranges::count_if(effect.parameters, &diagnosis::Parameter::fitted);
-    const bool time_only = diagnosis::effect_kind(effect.kind).time_only(effect);
     for (; next < end; ++next) {
-      if (time_only) own.push_back(next);
+      if (is_so(effect)) places.push_back(next);
     }
   }
-  return own;
+  return places;
+}
+
+// A further recording does not share them.
+std::vector<Index> own_numbers(const Model& model) {
+  return numbers_of(model, [](const diagnosis::Effect& effect) {
+    return diagnosis::effect_kind(effect.kind).time_only(effect);
+  });
 }
 
 // Forgets what is known of these numbers, and of the others through them: the Schur complement.
@@ -189,19 +198,19 @@ Contest::Contest(std::vector<Candidate> candidates, const Signals& signals)
 void Contest::weigh(const Signals& judged) {
   const auto count = static_cast<Index>(candidates_.size());
   const double samples = count_of(judged);
-  const diagnosis::Blocks blocks = diagnosis::make_blocks(judged);
+  std::vector<diagnosis::Linearisation> lines;
+  for (Candidate& candidate : candidates_) lines.push_back(fitted(candidate, judged));
+  const auto squares = [](const diagnosis::Linearisation& line) {
+    return line.residual.squaredNorm();
+  };
+  const Index best = std::ranges::min_element(lines, {}, squares) - lines.begin();
+  variance_ = squares(lines[static_cast<std::size_t>(best)]) / samples;
+  meet(static_cast<std::size_t>(best), judged, lines);
   std::vector<VectorXd> residuals;
-  variance_ = std::numeric_limits<double>::infinity();
-  for (Candidate& candidate : candidates_) {
-    diagnosis::fit(candidate.model, judged, blocks);
-    const diagnosis::Linearisation line = judged_line(candidate.model, judged, taps_.size());
-    if (!line.finite) {
-      throw ConfigError("candidate " + name_of(candidate), "a run that is not finite",
-                        "a model that was fitted to the recording");
-    }
-    variance_ = std::min(variance_, line.residual.squaredNorm() / samples);
+  for (diagnosis::Linearisation& line : lines) {
+    variance_ = std::min(variance_, squares(line) / samples);
     information_.push_back(line.jacobian.transpose() * line.jacobian);
-    residuals.push_back(line.residual);
+    residuals.push_back(std::move(line.residual));
   }
   std::vector<double> prices;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
@@ -212,6 +221,54 @@ void Contest::weigh(const Signals& judged) {
   }
   before_ = {MatrixXd::Zero(count, count), MatrixXd::Zero(count, count)};
   add(residuals, prices, judged, variance_, before_);
+}
+
+// Steps of Gauss and Newton of the cause's numbers, the others held.
+diagnosis::Linearisation Contest::cause_fitted(Candidate& candidate, const Signals& judged) const {
+  constexpr int kSteps = 3;  // most causes are linear in their numbers
+  const std::vector<Index> own = numbers_of(
+      candidate.model, [&](const diagnosis::Effect& each) { return &each == &candidate.cause(); });
+  diagnosis::Linearisation line = judged_line(candidate.model, judged, taps_.size());
+  for (int step = 0; step < kSteps && line.finite; ++step) {
+    const MatrixXd columns = line.jacobian(Eigen::all, own);
+    VectorXd numbers = diagnosis::packed(candidate.model);
+    numbers(own) += inverse(columns.transpose() * columns) * columns.transpose() * line.residual;
+    diagnosis::unpack(numbers, candidate.model);
+    line = judged_line(candidate.model, judged, taps_.size());
+  }
+  return line;
+}
+
+diagnosis::Linearisation Contest::fitted(Candidate& candidate, const Signals& judged) const {
+  diagnosis::fit(candidate.model, judged, diagnosis::make_blocks(judged));
+  diagnosis::Linearisation line = judged_line(candidate.model, judged, taps_.size());
+  if (!line.finite) {
+    throw ConfigError("candidate " + name_of(candidate), "a run that is not finite",
+                      "a model that was fitted to the recording");
+  }
+  return line;
+}
+
+// Eq. NR-13.
+void Contest::meet(std::size_t best, const Signals& judged,
+                   std::vector<diagnosis::Linearisation>& lines) {
+  const Candidate& leader = candidates_[best];
+  for (std::size_t j = 0; j < candidates_.size(); ++j) {
+    const diagnosis::Effect& cause = candidates_[j].cause();
+    const auto is_cause = [&](const diagnosis::Effect& each) { return is_same(each, cause); };
+    if (std::ranges::any_of(leader.model.effects, is_cause)) continue;
+    Candidate near = leader;
+    near.heldout_rmse = candidates_[j].heldout_rmse;
+    near.model.effects[near.effect] =
+        at_order(cause, candidates_[j].model.body.order(), leader.model.body.order());
+    const double most = lines[j].residual.squaredNorm() + kAsGood * variance_;
+    diagnosis::Linearisation line = cause_fitted(near, judged);
+    if (!line.finite) continue;
+    if (line.residual.squaredNorm() > most) line = fitted(near, judged);
+    if (line.residual.squaredNorm() > most) continue;
+    candidates_[j] = std::move(near);
+    lines[j] = std::move(line);
+  }
 }
 
 std::vector<Candidate> Contest::still_tied() const {

@@ -89,6 +89,12 @@ class Contest {
       std::size_t i, const diagnosis::Measurement& run) const;
   [[nodiscard]] Refit refitted(std::size_t j, const diagnosis::Signals& run, int steps) const;
   void weigh(const diagnosis::Signals& judged);
+  diagnosis::Linearisation fitted(Candidate& candidate, const diagnosis::Signals& judged) const;
+  diagnosis::Linearisation cause_fitted(Candidate& candidate,
+                                        const diagnosis::Signals& judged) const;
+  // Moves the others to where the best one is, where they explain as much there.
+  void meet(std::size_t best, const diagnosis::Signals& judged,
+            std::vector<diagnosis::Linearisation>& lines);
 
   std::vector<Candidate> candidates_;
   std::vector<std::string> inputs_;

@@ -20,6 +20,28 @@ TEST(ContestTest, TheSameColumnIsATie) {
   EXPECT_EQ(sut.still_tied().size(), 2U);
 }
 
+// Eq. NR-13.  A motion of one frequency alone (half the rate): 2 and 3/(1 + 0.5) are one gain
+// there.
+TEST(ContestTest, RivalsThatExplainAsMuchMeet) {
+  std::vector<Candidate> candidates{made::candidate("x"), made::candidate("z")};
+  candidates[0].model.body.numerators = {{2.0, 0.0}};
+  candidates[0].model.body.denominator = {1.0, 0.0};
+  candidates[1].model.body.numerators = {{3.0, 0.0}};
+  candidates[1].model.body.denominator = {1.0, -0.5};
+  const Contest sut(candidates, diagnosis::Signals(made::measured(3300, 4, 1), {"u"}, "y"));
+  EXPECT_EQ(sut.candidates()[0].model.body.denominator, sut.candidates()[1].model.body.denominator);
+  EXPECT_EQ(sut.candidates()[0].model.body.numerators, sut.candidates()[1].model.body.numerators);
+  EXPECT_EQ(sut.candidates()[0].cause().channels, std::vector<std::string>{"x"});
+  EXPECT_EQ(sut.candidates()[1].cause().channels, std::vector<std::string>{"z"});
+}
+
+// What one explains and the other does not, keeps it where it is.
+TEST(ContestTest, ARivalThatExplainsLessElsewhereStays) {
+  std::vector<Candidate> candidates{made::candidate("x"), made::candidate("z")};
+  const Contest sut(candidates, diagnosis::Signals(made::measured(3300, 8, 1), {"u"}, "y"));
+  EXPECT_GT(sut.before().twice_log_ratio(0, 1), 50.0);
+}
+
 // Two seconds of a tank's record, a sample each four, hold none.
 TEST(ContestTest, ASlowRecordingHasBlocksToo) {
   diagnosis::Measurement slow = made::measured(3300, 4, 1);
