@@ -90,7 +90,7 @@ class AttachTest(LabTestCase):
     def contested_session(self):
         """A stranger conducts the services first: the session is refused."""
         stranger = self.stranger(self.domain, "conducts", "a stranger")
-        lab = self.lab(*self.words, "--attach", "--match-seconds", 15, domain=self.domain, out=self.folder / "contested")
+        lab = self.lab(*self.words, "--attach", "--match-seconds", 6, domain=self.domain, out=self.folder / "contested")
         self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1)
         self.assertIn("two name the session's sources", " ".join(lab.errors()))
         stranger.kill()

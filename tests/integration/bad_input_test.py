@@ -143,25 +143,26 @@ class BadInputTest(LabTestCase):
                             "--ride", out / "screen.avi", out=out)
         self.assertTrue((out / "screen.avi").exists())
 
-    def test_folder_that_another_lab_writes_is_refused_and_kept(self):
-        first = self.lab("--conditions", "A")
-        first.wait_for_start()
-        self.assert_refused(["--out", str(first.out), "another lab"], out=first.out)
-        self.assertTrue((first.out / "session.mcap").exists())
-        first.interrupt()
-        self.assertEqual(first.end_status(), 1)
-
-    def test_files_of_others_in_the_folder_are_kept(self):
+    def test_a_session_keeps_files_of_others_and_refuses_a_second_lab_in_its_folder_and_on_its_domain(self):
         out = self.folder / "mine"
         (out / "logs").mkdir(parents=True)
-        for name in ("notes.txt", "logs/server.log"):
-            (out / name).write_text("kept")
-        lab = self.lab("--conditions", "A", out=out)
-        lab.wait_for_start()
-        lab.interrupt()
-        self.assertEqual(lab.end_status(), 1)
-        self.assertEqual((out / "notes.txt").read_text(), "kept")
-        self.assertEqual((out / "logs" / "server.log").read_text(), "kept")
+        others = [out / "notes.txt", out / "logs" / "server.log"]
+        for file in others:
+            file.write_text("kept")
+        first = self.lab("--conditions", "A", out=out)
+        first.wait_for_start()
+        self.assert_refused(["--out", str(out), "another lab"], out=out)
+        self.assertTrue((out / "session.mcap").exists())
+        second = self.lab(out=self.folder / "second", domain=first.domain)
+        self.assertEqual(second.end_status(), 2)
+        self.assert_one_line(second.errors(), ["--domain", str(first.domain), "another lab"])
+        self.assertFalse(second.out.exists())
+        self.assertIsNone(first.process.poll())
+        self.assertGreater(len(running(first.domain)), len(lab_process.SERVICES))
+        first.interrupt()
+        self.assertEqual(first.end_status(), 1)
+        self.assert_nothing_left(first)
+        self.assertEqual([file.read_text() for file in others], ["kept", "kept"])
 
     def test_a_model_that_the_canceller_refuses_ends_the_session_before_the_trial(self):
         arguments = lab_process.quick_session(self.folder / "config")
@@ -172,19 +173,6 @@ class BadInputTest(LabTestCase):
         self.assertEqual(lab.errors()[-1].count("the log of cancellation says why"), 1, "the reason, once")
         self.assertIn("model gain is above the bound", (lab.out / "logs" / "cancellation.log").read_text())
         self.assertFalse(lab.summary()["trials"][-1]["completed"])
-
-    def test_second_lab_on_a_domain_is_refused_and_the_first_goes_on(self):
-        first = self.lab("--conditions", "A")
-        first.wait_for_start()
-        lab = self.lab(out=self.folder / "second", domain=first.domain)
-        self.assertEqual(lab.end_status(), 2)
-        self.assert_one_line(lab.errors(), ["--domain", str(first.domain), "another lab"])
-        self.assertFalse(lab.out.exists())
-        self.assertIsNone(first.process.poll())
-        self.assertGreater(len(running(first.domain)), len(lab_process.SERVICES))
-        first.interrupt()
-        self.assertEqual(first.end_status(), 1)
-        self.assert_nothing_left(first)
 
     def test_port_in_use_is_named(self):
         domain = next_domain()

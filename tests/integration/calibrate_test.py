@@ -201,7 +201,7 @@ class CalibrateTest(LabTestCase):
             "cocontraction_stiffness_factor": 1, "cocontraction_damping_factor": 1,
             "neuromuscular": {"involuntary_force_n": 0, "tremor_force_n": 0}}
 
-    def test_the_check_with_the_hand_off_refuses_every_wrong_sign(self):
+    def test_the_check_with_the_hand_off(self):
         self.other_rig(body=self.SOFT)
         status, said, errors = self.calibrate("check", "", list(self.STEPS))
         self.assertEqual((status, errors), (0, ""), said)
@@ -216,22 +216,8 @@ class CalibrateTest(LabTestCase):
         self.assertLess(seen["most_torque_n_m"], 0.11)
         for rule in ("other_modes", "without_watchdog", "with_gains", "without_bound"):
             self.assertEqual(seen[rule], 0, rule)
-
-        devices = self.config / "devices.yaml"
-        plain = devices.read_text()
-        for name, steps, text, why in (
-                ("the other side", [("turn", -0.5236), ("turn", 0.5236)], plain, "change drive.angle_sign"),
-                ("wires the wrong way round", [*self.STEPS[:3], ("pull", -1)], plain, "the sign is wrong"),
-                ("torque", self.STEPS[:5], plain.replace("drive:\n  port", "drive:\n  torque_sign: -1\n  port"),
-                 "change drive.torque_sign")):
-            with self.subTest(name):
-                devices.write_text(text)
-                status, said, errors = self.calibrate("check", "", list(steps))
-                self.assertEqual(status, 1, said)
-                self.assertIn(why, errors)
-                self.laboratory.order("pull", 0)
-        # What was right before does not count any more.
-        self.assertEqual(self.settings("calibration.yaml")["check"]["date"], "")
+        self.judge_session()
+        self.judge_wrong_signs()
 
     def rig_refuses(self):
         """The line with which the session's rig process refuses these devices; None: it goes on to query them."""
@@ -249,10 +235,8 @@ class CalibrateTest(LabTestCase):
             self.assertEqual(rig.returncode, 2)
             return rig.stderr.read().strip()
 
-    def test_after_a_good_check_a_session_refuses_another_sign_or_lever(self):
-        self.other_rig(body=self.SOFT)
-        status, said, errors = self.calibrate("check", "", list(self.STEPS))
-        self.assertEqual((status, errors), (0, ""), said)
+    def judge_session(self):
+        """Behind a good check a session's rig refuses another sign or lever."""
         kept = self.settings("calibration.yaml")
         # The other calibrations, as their verbs would write them: the same names, and what sensing.yaml holds.
         _, *names = kept["check"]["devices"].split("; ")
@@ -281,6 +265,23 @@ class CalibrateTest(LabTestCase):
                 self.assertIsNotNone(line)
                 self.assertIn(f"calibration.yaml: {record}: got a calibration of", line)
                 self.assertIn(name, line.split("want one of")[1])
+
+    def judge_wrong_signs(self):
+        devices = self.config / "devices.yaml"
+        plain = devices.read_text()
+        for name, steps, text, why in (
+                ("the other side", [("turn", -0.5236), ("turn", 0.5236)], plain, "change drive.angle_sign"),
+                ("wires the wrong way round", [*self.STEPS[:3], ("pull", -1)], plain, "the sign is wrong"),
+                ("torque", self.STEPS[:5], plain.replace("drive:\n  port", "drive:\n  torque_sign: -1\n  port"),
+                 "change drive.torque_sign")):
+            with self.subTest(name):
+                devices.write_text(text)
+                status, said, errors = self.calibrate("check", "", list(steps))
+                self.assertEqual(status, 1, said)
+                self.assertIn(why, errors)
+                self.laboratory.order("pull", 0)
+        # What was right before does not count any more.
+        self.assertEqual(self.settings("calibration.yaml")["check"]["date"], "")
 
 
 if __name__ == "__main__":

@@ -57,7 +57,7 @@ class InterruptTest(LabTestCase):
         recorder = pathlib.Path(f"/proc/{lab.pid_of('recorder')}/cmdline").read_text().split("\0")
         self.assertEqual(recorder[recorder.index("--flush-ms") + 1], "50")
         self.assertIn("--fsync", recorder)
-        # An orderly shutdown of the machine terminates.
+        # An orderly shutdown of the machine terminates; a terminal that closes makes the same request (unit.runtime).
         self.assert_interrupted(lab, lambda: os.kill(lab.process.pid, signal.SIGTERM))
         self.assert_recording_holds(lab, 0)
         self.assertIn("chunks (lz4)", subprocess.run([str(STILLHAND), "info", str(lab.out / "session.mcap")],
@@ -74,14 +74,6 @@ class InterruptTest(LabTestCase):
         self.assertEqual(lab.summary()["conditions"], {})
         self.assertEqual({path.name for path in lab.out.iterdir()},
                          {"session.mcap", "summary.json", "model.json", "logs"})
-
-    # A closed terminal hangs up.
-    def test_hang_up_ends_a_session_as_ctrl_c_does(self):
-        lab = self.start()
-        lab.wait_for_tick(0, 1, TRIAL_LIMIT_S)
-        self.assert_interrupted(lab, lambda: os.kill(lab.process.pid, signal.SIGHUP))
-        self.assert_recording_holds(lab, 0)
-        self.assert_marked(lab, 0)
 
     # A limit on the size of files stands in for a full disk: the recorder writes 0.4 MB a second.
     def test_recording_that_cannot_be_written_ends_the_trial(self):

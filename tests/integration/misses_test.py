@@ -21,7 +21,7 @@ CAMPAIGN_TOLERANCE_S = 1e-3  # on an idle machine: half a tick, and as much agai
 class MissesTest(LabTestCase):
     def session_with_a_stop(self, service, length_s):
         """Returns the recording, and when [ns, monotonic] the service stood still."""
-        lab = self.lab(*quick_session(self.folder / f"config-{service}-{length_s}"), "--trial-seconds", "20",
+        lab = self.lab(*quick_session(self.folder / f"config-{service}-{length_s}"), "--trial-seconds", "8",
                        out=self.folder / f"run-{service}-{length_s}")
         lab.wait_for_tick(1, 2, TRIAL_LIMIT_S)
         pid = lab.pid_of(service)

@@ -152,9 +152,8 @@ class StudyTest(FolderCase):
             lines = (out / f"{name}.csv").read_text().splitlines()
             self.assertEqual({line.count(",") for line in lines}, {lines[0].count(",")}, name)
 
-    def test_report_needs_no_network(self):
-        out = self.folder / "study"
-        self.run_verb("study", *SHORT, "--out", out)
+    def judge_page(self, out):
+        """The page needs no network."""
         text = (out / "report.html").read_text()
         page = Tags()
         page.feed(text)
@@ -170,6 +169,8 @@ class StudyTest(FolderCase):
         for path in first.glob("*.csv"):
             self.assertEqual(path.read_text(), (second / path.name).read_text(), path.name)
         self.assertEqual((first / "summary.json").read_text(), (second / "summary.json").read_text())
+        self.judge_page(first)
+        self.judge_disk_that_fills(first)
 
     def assert_not_studied(self, arguments, words):
         before = sorted(self.folder.rglob("*"))
@@ -196,9 +197,8 @@ class StudyTest(FolderCase):
         self.assert_not_studied([*SHORT, "--out", a_file / "study"], ["--out", "taken"])
         self.assertEqual(a_file.read_text(), "mine")
 
-    def test_a_disk_that_fills_leaves_what_was_there(self):
-        out = self.folder / "study"
-        self.run_verb("study", *SHORT, "--out", out)
+    def judge_disk_that_fills(self, out):
+        """It leaves what was there."""
         before = {path.name: path.read_bytes() for path in out.iterdir()}
 
         def small_files_only():

@@ -60,7 +60,7 @@ class UndeclaredEffectTest(LabTestCase):
 
     def sealed_session(self):
         """A session with the effect; and where its seed could be read meanwhile, {program: file in /proc}."""
-        lab = self.lab("--conditions", "B", "--identify-seconds", 10, "--trial-seconds", 5, "--seed", 3, "--config",
+        lab = self.lab("--conditions", "B", "--identify-seconds", 5, "--trial-seconds", 5, "--seed", 3, "--config",
                        loose_settings(self.folder / "config"), "--undeclared-effect", SEED, out=self.folder / "sealed")
         told = {}
 
