@@ -100,7 +100,7 @@ TEST(NoiseModelTest, AnEffectUnderSlowNoiseIsFoundBehindTheFilter) {
   spec.snr_db = 16.0;
   spec.noise = planted::NoiseShape::kLowPass;
   spec.length_s = 60.0;
-  const Diagnosis sut = diagnose(planted::to_measurement(planted::draw(7, spec).recording), {});
+  const Diagnosis sut = diagnose(planted::to_measurement(planted::draw(1, spec).recording), {});
   ASSERT_FALSE(sut.effects.empty());
   EXPECT_EQ(sut.effects[0].effect.kind, "coulomb_friction");
   EXPECT_TRUE(sut.search.whitened);
