@@ -12,7 +12,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::control_model_test {
 namespace {
 
 constexpr std::size_t kA_y = static_cast<std::size_t>(Channel::kAccelY);
@@ -333,6 +333,18 @@ TEST(ControlModelTest, WhatIsNoModelIsRefused) {
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].threshold = 0.0; }), Refusal::kNotFinite);
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].threshold = -1.0; }), Refusal::kMalformed);
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].low = 1.0; }), Refusal::kMalformed);
+  // A loop through the output has e alone, of the body's length; one inside has n and m as long.
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->e.push_back(0.0); }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->n = {0.0, 0.0, 0.0}; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->m = {0.0, 0.0, 0.0}; }), Refusal::kMalformed);
+  const auto inside = [](auto& m) {
+    m.loop->e = {0.0, 0.0, 0.0};
+    m.loop->n = {1e-6, 0.0, 0.0};
+    m.loop->m = {0.0, 1e-6, 0.0};
+  };
+  EXPECT_EQ(spoilt(inside), Refusal::kNone);
+  EXPECT_EQ(spoilt([&](auto& m) { inside(m), m.loop->m[0] = 1e-6; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([&](auto& m) { inside(m), m.loop->n.pop_back(); }), Refusal::kMalformed);
   EXPECT_EQ(spoilt([](auto& m) { m.loop->ticks = 0; }), Refusal::kMalformed);
   EXPECT_EQ(spoilt([](auto& m) { m.loop->ticks = 201; }), Refusal::kMalformed);
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].high = std::nan(""); }), Refusal::kNotFinite);
@@ -386,4 +398,4 @@ TEST(ForceTest, AToneIsAnsweredOnTheSampleClock) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::control_model_test

@@ -132,6 +132,16 @@ TEST(PageLayoutTest, AScaleCanBeClickedBoxByBox) {
                          (box.area.bottom_m + box.area.top_m) / 2),
               box.value);
   }
+  // A number stands in the middle of its box.
+  for (const PlacedBox& box : sut.boxes) {
+    if (box.value == kButton) continue;
+    const auto number = std::ranges::find(sut.texts, std::to_string(box.value), &PlacedText::text);
+    ASSERT_NE(number, sut.texts.end()) << box.value;
+    const Extent own = extent(*number);
+    EXPECT_NEAR(own.left_m + own.right_m, box.area.left_m + box.area.right_m, 1e-9);
+    EXPECT_GT(number->baseline_m, box.area.bottom_m);
+    EXPECT_LT(number->baseline_m, (box.area.bottom_m + box.area.top_m) / 2);
+  }
   EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, kButton));
   EXPECT_FALSE(sut.box_at(0.0, 0.11));
 }

@@ -13,7 +13,7 @@
 #include "services/core/signal/difference_model.hpp"
 #include "services/core/signal/second_order_lag.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::identify_position_test {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -61,6 +61,21 @@ TEST(IdentifyPositionTest, FindsAKnownHandInMetres) {
   EXPECT_LT(sut.model->heldout.free_run_rms_n, 1e-3);  // [m]
 }
 
+// The chain of a force in millimetres, refined whether it was asked for or not.
+TEST(IdentifyPositionTest, IsTheRefinedChainInMillimetres) {
+  PeggedTrial in_mm = trial();
+  for (double& x : in_mm.record.force_n) x /= 1e-3;
+  Config refined;
+  refined.refine = true;
+  const Identification wanted = identify(in_mm, refined);
+  const Identification sut = identify_position(trial(), {});
+  ASSERT_TRUE(wanted.model && sut.model) << wanted.why_not << sut.why_not;
+  EXPECT_EQ(sut.model->control.denominator, wanted.model->control.denominator);
+  for (std::size_t k = 0; k < wanted.model->control.numerator.size(); ++k) {
+    EXPECT_DOUBLE_EQ(sut.model->control.numerator[k], 1e-3 * wanted.model->control.numerator[k]);
+  }
+}
+
 // The other way round: the platform would add to what it moves.
 TEST(IdentifyPositionTest, AnAngleOfTheWrongSignIsRefused) {
   PeggedTrial turned = trial();
@@ -82,4 +97,4 @@ TEST(IdentifyPositionTest, AnAngleThatStandsStillIsNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::identify_position_test

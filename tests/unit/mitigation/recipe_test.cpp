@@ -211,6 +211,19 @@ TEST(RecipeTest, AHandOrAnArmOfNoPersonIsRefusedByName) {
   Part arms = *std::ranges::find(sound, PartKind::kSchedule, &Part::kind);
   arms.values[admittance::kArmParameters + admittance::kGripStiffness] = 1e9;
   EXPECT_THAT(refusal({arms}), HasSubstr("grip_stiffness_n_m = 1e+09"));
+  // A reflex of any size up to a thousand arms, and of a second at most.
+  const admittance::ArmValues mean = admittance::mean_arm();
+  using Bound = std::pair<std::size_t, double>;
+  for (const auto& [parameter, most] :
+       {Bound{admittance::kReflexDelay, 1.0},
+        Bound{admittance::kReflexStiffness, 1000.0 * mean[admittance::kArmStiffness]},
+        Bound{admittance::kReflexDamping, 1000.0 * mean[admittance::kArmDamping]}}) {
+    Part reflex = *std::ranges::find(sound, PartKind::kSchedule, &Part::kind);
+    reflex.values[parameter] = 1.01 * most;
+    EXPECT_THAT(refusal({reflex}), HasSubstr(admittance::arm_parameter_names()[parameter].name));
+    reflex.values[parameter] = 0.99 * most;
+    EXPECT_THAT(refusal({reflex}), testing::Not(HasSubstr("a magnitude of at most")));
+  }
 }
 
 TEST(RecipeTest, AModelOfPositionIsCheckedAndItsGainBounded) {

@@ -178,6 +178,15 @@ TEST(PeakLimitTest, PhasesThatAreGoodEnoughStay) {
   EXPECT_EQ(sut.accel_m_s2, before.accel_m_s2);
 }
 
+// A tone's peak is its amplitude, wherever it lies between the points of the grid.
+TEST(PeakLimitTest, APeakBetweenTwoPointsCounts) {
+  for (int part = 0; part < 50; ++part) {
+    MotionSpectrum sut = band_noise(profile_of(MotionKind::kBandNoise));
+    sut.accel_m_s2 = {std::polar(1.0, 0.02 * part)};
+    EXPECT_THROW(limit_peaks(sut, {0.999, 10.0}), ConfigError) << part;
+  }
+}
+
 // No signal of 1.6 m/s^2 RMS has a peak below that.
 TEST(PeakLimitTest, AnImpossibleBoundIsRefused) {
   auto sut = band_noise(profile_of(MotionKind::kBandNoise));

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace stillhand::recording {
+namespace stillhand::recording::cdr_reader_test {
 namespace {
 
 std::vector<std::byte> message(std::initializer_list<int> values) {
@@ -133,4 +133,4 @@ TEST(CdrReaderTest, NoOrderOfValuesReadsOutsideAMessageOfRandomBytes) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::cdr_reader_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/recorded_file.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::clock_steps_test {
 namespace {
 
 using tests::Bytes;
@@ -33,8 +33,10 @@ struct Recorded {
   McapWriter writer{sink, {2000, Compression::kNone, "stillhand-test"}};
   ChannelId stream = 0, other = 0;
 
-  explicit Recorded(std::int64_t set_by_ns, const TextMap& qos = {{"qos_profile", "stream_1khz"}}) {
-    EXPECT_TRUE(writer.add_metadata("stillhand.session", {{"clock_offset_ns at start", "5"}}).ok());
+  explicit Recorded(std::int64_t set_by_ns, const TextMap& qos = {{"qos_profile", "stream_1khz"}},
+                    TextMap session = {}) {
+    session["clock_offset_ns at start"] = "5";
+    EXPECT_TRUE(writer.add_metadata("stillhand.session", session).ok());
     const std::string end = std::to_string(5 + set_by_ns);
     EXPECT_TRUE(writer.add_metadata("stillhand.counts", {{"clock_offset_ns at end", end}}).ok());
     stream = writer.add_channel("stillhand/sensed", 0, "cdr", qos);
@@ -146,6 +148,20 @@ TEST(ClockStepsTest, APauseOrARecorderThatStoodStillIsNoStep) {
   }
 }
 
+// It says by which clock it logs, and no jump of its times is one of the system's clock.
+TEST(ClockStepsTest, ARecorderThatNamesItsClockIsBelieved) {
+  Recorded recorded(-kSecond, {{"qos_profile", "stream_1khz"}}, {{"log_clock", "monotonic"}});
+  std::vector<std::int64_t> want;
+  for (std::int64_t n = 0; n < 2000; ++n) {
+    want.push_back(1000 + n - (n >= 1000 ? 1000 : 0));
+    recorded.put(n, kStart + want.back() * kMs);
+  }
+  ASSERT_TRUE(recorded.writer.close().ok());
+  const auto [times_ms, steps] = read(recorded.sink.bytes());
+  EXPECT_EQ(times_ms, want);
+  EXPECT_TRUE(steps.empty());
+}
+
 TEST(ClockStepsTest, AStepAtTheEndIsDecidedByWhatTheRecorderNoted) {
   for (const std::int64_t noted_ns : {10 * kSecond, 7 * kSecond}) {
     Recorded recorded(noted_ns);
@@ -192,4 +208,4 @@ TEST(ClockStepsTest, TimesThatAreNoRecordersClockStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::clock_steps_test

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace stillhand::recording {
+namespace stillhand::recording::compression_test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -82,4 +82,4 @@ TEST(CompressionNameTest, NamesAndKindsMatch) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::compression_test

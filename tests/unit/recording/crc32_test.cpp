@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace stillhand::recording {
+namespace stillhand::recording::crc32_test {
 namespace {
 
 std::span<const std::byte> bytes(std::string_view text) { return std::as_bytes(std::span(text)); }
@@ -25,4 +25,4 @@ TEST(Crc32Test, AnEmptyPieceChangesNothing) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::crc32_test

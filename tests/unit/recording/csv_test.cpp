@@ -8,7 +8,7 @@
 
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::csv_test {
 namespace {
 
 using testing::ElementsAre;
@@ -129,4 +129,4 @@ TEST(CsvTest, WhatIsNoTextIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::csv_test

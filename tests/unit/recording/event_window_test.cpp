@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace stillhand::recording {
+namespace stillhand::recording::event_window_test {
 namespace {
 
 /// Messages at the given times, each of `size` bytes.
@@ -119,4 +119,4 @@ TEST(EventWindowTest, WithoutALackOfRoomItHoldsEveryMessageOfTheWindow) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::event_window_test

@@ -14,7 +14,7 @@
 #include "tests/support/recorded_file.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::file_io_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,4 +133,4 @@ TEST_F(FileIoTest, CsvGoesThroughAFileAndErrorsNameIt) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::file_io_test

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-namespace stillhand::recording {
+namespace stillhand::recording::keep_options_test {
 namespace {
 
 // What a recorder's command line makes of these words.
@@ -50,4 +50,4 @@ TEST(KeepOptionsTest, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::keep_options_test

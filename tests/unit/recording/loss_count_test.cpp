@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace stillhand::recording {
+namespace stillhand::recording::loss_count_test {
 namespace {
 
 TEST(LossCountTest, NothingIsLostWhereBothNumberingsGoOn) {
@@ -101,4 +101,4 @@ TEST(LossCountTest, OverRandomLossesTheCountsAreThoseThatWereMade) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::loss_count_test

@@ -9,7 +9,7 @@
 #include "services/core/recording/mcap/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::mcap_damage_test {
 namespace {
 
 using tests::Bytes;
@@ -270,4 +270,4 @@ INSTANTIATE_TEST_SUITE_P(EveryKind, McapDamageTest,
                                          Compression::kZstd));
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::mcap_damage_test

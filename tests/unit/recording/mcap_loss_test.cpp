@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-namespace stillhand::recording {
+namespace stillhand::recording::mcap_loss_test {
 namespace {
 
 using testing::AllOf;
@@ -98,4 +98,4 @@ TEST(LossLineTest, ALostFooterIsADamagedPlace) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::mcap_loss_test

@@ -8,7 +8,7 @@
 #include "services/core/recording/mcap/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::mcap_reader_test {
 namespace {
 
 using tests::messages_of;
@@ -196,6 +196,28 @@ TEST(McapReaderTest, ReadsAForeignFileWithoutChunksOrSummary) {
   EXPECT_TRUE(sut.damage().empty()) << sut.damage().front().text;
 }
 
+// A summary's index of attachments is known; one whose texts end too early is damage.
+TEST(McapReaderTest, AnIndexOfAttachmentsIsPartOfASummary) {
+  for (const std::size_t spare : {0u, 1u}) {
+    Bytes file;
+    put_header(file);
+    put_channel(file, {1, 0, "t", "json", {}});
+    put_message(file, 1, 0, 4);
+    const auto index = begin_record(file, Opcode::kAttachmentIndex);
+    put_bytes(file, Bytes(40));
+    put_text(file, "notes.txt");
+    put_text(file, "text/plain");
+    put_bytes(file, Bytes(spare));
+    end_record(file, index);
+    put_end(file);
+    MemorySource source(file);
+    McapReader sut(source);
+    ASSERT_TRUE(sut.status().ok());
+    EXPECT_EQ(messages_of(sut).size(), 1u);
+    EXPECT_EQ(sut.damage().size(), spare);
+  }
+}
+
 TEST(McapReaderTest, IgnoresFieldsThatALaterVersionAppends) {
   Bytes out;
   put_header(out);
@@ -283,4 +305,4 @@ TEST(McapReaderTest, AFailingSourceIsAStatus) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::mcap_reader_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-namespace stillhand::recording {
+namespace stillhand::recording::mcap_records_test {
 namespace {
 
 // Content of the record that `put` writes, without its head.
@@ -196,4 +196,4 @@ TEST(McapRecordsTest, RandomBytesGiveARecordOrNothing) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::mcap_records_test

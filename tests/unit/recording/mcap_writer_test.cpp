@@ -11,7 +11,7 @@
 #include "services/core/recording/mcap/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::mcap_writer_test {
 namespace {
 
 using tests::Bytes;
@@ -142,4 +142,4 @@ TEST(McapWriterTest, EveryChunkNamesItsOwnChannels) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::mcap_writer_test

@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <random>
 
-namespace stillhand::recording {
+namespace stillhand::recording::message_columns_test {
 namespace {
 
 using testing::ElementsAre;
@@ -184,4 +184,4 @@ TEST(MessageColumnsLimitsTest, WhatCannotBeATableIsRefusedWithItsReason) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::message_columns_test

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-namespace stillhand::recording {
+namespace stillhand::recording::of_experiment_test {
 namespace {
 
 OfExperiment parsed(std::vector<std::string> words) {
@@ -37,4 +37,4 @@ TEST(OfExperimentTest, TheRecordHasTheThreeKeysOfTheFormat) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::of_experiment_test

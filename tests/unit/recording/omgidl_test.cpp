@@ -6,7 +6,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::omgidl_test {
 namespace {
 
 using testing::ElementsAre;
@@ -224,4 +224,4 @@ TEST(IdlSchemaTest, CutAndChangedTextsEndInAnAnswerOrAnError) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::omgidl_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-namespace stillhand::recording {
+namespace stillhand::recording::omgidl_tokens_test {
 namespace {
 
 using testing::ElementsAre;
@@ -87,4 +87,4 @@ TEST(OmgIdlTokensTest, EveryTextEndsInOneEmptyToken) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::omgidl_tokens_test

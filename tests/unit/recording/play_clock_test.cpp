@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::recording {
+namespace stillhand::recording::play_clock_test {
 namespace {
 
 constexpr std::int64_t kNow = 123'456'789;
@@ -122,4 +122,4 @@ TEST(PlayClockTest, ASeekWorksWhilePausedAndWhileRunning) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::play_clock_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace stillhand::recording {
+namespace stillhand::recording::recording_test {
 namespace {
 
 Recording at(std::vector<double> time_s) {
@@ -65,4 +65,4 @@ TEST(RecordingTest, AGapOfMorePeriodsThanAnIntegerCountsIsStillAGap) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::recording_test

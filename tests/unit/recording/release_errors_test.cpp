@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::recording {
+namespace stillhand::recording::release_errors_test {
 namespace {
 
 TEST(ReleaseErrorsTest, PercentilesAreTheMicrosecondThatTheyStayBelow) {
@@ -29,4 +29,4 @@ TEST(ReleaseErrorsTest, WithoutMessagesEverythingIsZero) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::release_errors_test

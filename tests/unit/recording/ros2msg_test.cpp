@@ -10,7 +10,7 @@
 #include "tests/support/cdr_bytes.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::ros2msg_test {
 namespace {
 
 using testing::HasSubstr;
@@ -110,4 +110,4 @@ TEST(Ros2MsgTest, TheSchemaRecordOfAFileChoosesTheParser) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::ros2msg_test

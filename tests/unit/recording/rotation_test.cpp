@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::recording {
+namespace stillhand::recording::rotation_test {
 namespace {
 
 TEST(RotationTest, AFileIsFullBySizeOrByAgeWhicheverComesFirst) {
@@ -25,4 +25,4 @@ TEST(RotationTest, TheNumberStandsBeforeTheEndingAndSortsByName) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::rotation_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::recording {
+namespace stillhand::recording::same_definition_test {
 namespace {
 
 constexpr const char* kKnown =
@@ -76,4 +76,4 @@ TEST(SameDefinitionTest, MembersAtTheEndMayBeMissingWhereTheProgramReadsTheEarli
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::same_definition_test

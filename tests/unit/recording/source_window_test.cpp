@@ -9,7 +9,7 @@
 
 #include "services/core/recording/mcap/memory_bytes.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::source_window_test {
 namespace {
 
 // Counts the reads of a source, and fails from one of them on.
@@ -85,4 +85,4 @@ TEST(SourceWindowTest, TheFirstFailureStaysAndNothingIsReadAfterIt) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::source_window_test

@@ -15,7 +15,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/session_file.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::tally_test {
 namespace {
 
 using runtime::FoundWriter;
@@ -215,4 +215,4 @@ TEST(TrialLogTest, OtherTopicsOtherTypesCutBytesAndNoTrialAreIgnored) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::tally_test

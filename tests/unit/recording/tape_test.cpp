@@ -16,7 +16,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/wait.hpp"
 
-namespace stillhand::recording {
+namespace stillhand::recording::tape_test {
 namespace {
 
 using support::eventually;
@@ -324,4 +324,4 @@ TEST(QosTextsTest, EveryPolicyComesBackFromItsText) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::tape_test

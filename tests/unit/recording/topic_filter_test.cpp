@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::recording {
+namespace stillhand::recording::topic_filter_test {
 namespace {
 
 TEST(TopicFilterTest, PatternsMatchWhatTheySay) {
@@ -47,4 +47,4 @@ TEST(TopicFilterTest, TheTopicsOfARecordingAreNamedOnceEach) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::topic_filter_test

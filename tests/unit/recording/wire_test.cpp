@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-namespace stillhand::recording {
+namespace stillhand::recording::wire_test {
 namespace {
 
 using testing::ElementsAreArray;
@@ -137,4 +137,4 @@ TEST(WireTest, RecordsAreTakenInOrderAndAPartOfARecordIsNone) {
 }
 
 }  // namespace
-}  // namespace stillhand::recording
+}  // namespace stillhand::recording::wire_test
