@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "services/core/contract/units.hpp"
 #include "services/files/device_rig/calibration_file.hpp"
 
 namespace stillhand::calibrate {
 
 /// Standard gravity [m/s^2]: the third CGPM, 1901.
-inline constexpr double kGravity_m_s2 = 9.80665;
 
 /// "0,5,-0.5kg": quantities of a signal, separated by commas, each with the signal's unit or
 /// another one: N or kg (a weight), m/s^2 or g, rad or deg.  Without a unit it is the signal's.

@@ -7,6 +7,7 @@
 #include "apps/close_the_loop/output.hpp"
 #include "apps/close_the_loop/repair_output.hpp"
 #include "apps/libraries/measurement/grid.hpp"
+#include "services/core/contract/units.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 
@@ -17,7 +18,6 @@ using report::Colour;
 
 constexpr double kExcerpt_s = 12.0;
 constexpr std::size_t kEvery = 20;  // samples at 1 kHz that a line of the screen shows
-constexpr double kMmPerM = 1e3;
 
 struct Shown {
   const TrialRun* trial;
@@ -81,10 +81,11 @@ report::Figure tracking_figure(const LoopRecord& record) {
 }
 
 // Twelve seconds from the middle of a record; the whole of a shorter one.
-class Excerpt {
+class MiddlePart {
  public:
   /// @param stride  samples from one that is shown to the next
-  Excerpt(const std::vector<double>& time_s, double rate_hz, std::size_t stride) : stride_(stride) {
+  MiddlePart(const std::vector<double>& time_s, double rate_hz, std::size_t stride)
+      : stride_(stride) {
     const auto count = std::min(static_cast<std::size_t>(kExcerpt_s * rate_hz), time_s.size());
     from_ = (time_s.size() - count) / 2;
     end_ = from_ + count;
@@ -122,7 +123,7 @@ report::Figure force_figure(const LoopRecord& record) {
   const std::vector<double> before = run(verdict.body.baseline.model);
   const std::vector<double> after = run(verdict.body.model);
   const std::vector<double>& force = signals.output().values;
-  const Excerpt excerpt(signals.time_s(), signals.rate_hz(), 1);
+  const MiddlePart excerpt(signals.time_s(), signals.rate_hz(), 1);
   const auto left = [&](std::vector<double> predicted) {
     for (std::size_t n = 0; n < predicted.size(); ++n) predicted[n] = force[n] - predicted[n];
     return excerpt.of(predicted);
@@ -187,7 +188,7 @@ report::Figure motion_figure(const LoopResult& result) {
   double largest = 0.0;  // one scale for all: they are to be compared
   for (const Shown& each : conditions) {
     const recording::Recording& rows = each.trial->measured;
-    const Excerpt excerpt(rows.time_s, rows.rate_hz, kEvery);
+    const MiddlePart excerpt(rows.time_s, rows.rate_hz, kEvery);
     report::Panel panel;
     panel.title = each.trial->label;
     panel.y.label = "[mm]";

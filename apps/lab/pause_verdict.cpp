@@ -10,40 +10,40 @@
 namespace stillhand::lab {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
-std::string newton(const json& level) { return report::number(level.at("rms"), 2) + " N"; }
+std::string newton(const Json& level) { return report::number(level.at("rms"), 2) + " N"; }
 
-double unseen_s(const json& summary) {
+double unseen_s(const Json& summary) {
   double seconds = 0.0;
-  for (const json& record : summary.at("unseen")) seconds += record.at("seconds").get<double>();
+  for (const Json& record : summary.at("unseen")) seconds += record.at("seconds").get<double>();
   return seconds;
 }
 
 // The effects that are in C+; what the verdict names besides is left alone.
-std::string carried(const json& summary) {
+std::string carried(const Json& summary) {
   std::string out;
-  for (const json& each : summary.at("treatments")) {
+  for (const Json& each : summary.at("treatments")) {
     if (!each.at("cancelled").get<bool>()) continue;
     out += (out.empty() ? "" : " and ") + each.at("kind").get<std::string>();
   }
   return out;
 }
 
-std::string why_not(const json& summary) {
+std::string why_not(const Json& summary) {
   if (summary.at("verdict").at("kind") == "none") return "nothing that counts is missing in it";
   const std::string kind = carried(summary);
   if (kind.empty()) {
-    const json& left = summary.at("treatments").at(0);
+    const Json& left = summary.at("treatments").at(0);
     return left.at("kind").get<std::string>() +
            " is left alone: " + left.at("how").get<std::string>();
   }
-  if (const json& refused = summary.at("not_carried"); !refused.is_null()) {
+  if (const Json& refused = summary.at("not_carried"); !refused.is_null()) {
     return kind + " is not carried: " + refused.get<std::string>();
   }
   if (summary.at("decided_on") != "motor") return kind + " was not judged by the motor";
   if (summary.at("kept").get<bool>()) return {};
-  const json& decision = summary.at("decision");
+  const Json& decision = summary.at("decision");
   return fmt::format("C+ ({}) would leave {} where it leaves {}{}", kind,
                      newton(decision.at("augmented")), newton(decision.at("linear")),
                      decision.at("less").get<double>() > 0.0 ? ", which may be chance" : "");
@@ -52,11 +52,11 @@ std::string why_not(const json& summary) {
 }  // namespace
 
 PauseVerdict pause_verdict(const std::string& text) {
-  const json summary = json::parse(text);
+  const Json summary = Json::parse(text);
   PauseVerdict out;
   out.why_not = why_not(summary);
   if (!out.why_not.empty()) return out;
-  const json& decision = summary.at("decision");
+  const Json& decision = summary.at("decision");
   out.certain = !decision.at("less_interval95").is_null();
   out.found =
       fmt::format("{}: leaves {} where a linear model leaves {}, in {:.0f} s that no fit has seen",

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "apps/libraries/report/staged_folder.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::recordings {
 namespace {
@@ -37,7 +38,6 @@ void put_number(std::string& out, Number number) {
 
 // Exact: a double of seconds since 1970 does not resolve nanoseconds.
 void put_seconds(std::string& out, std::int64_t time_ns) {
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;
   if (time_ns < 0) out += '-';
   const auto whole = std::lldiv(time_ns, kSecond_ns);
   put_number(out, std::llabs(whole.quot));

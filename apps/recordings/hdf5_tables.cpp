@@ -16,7 +16,7 @@ using recording::Cell;
 using recording::CellKind;
 
 constexpr hsize_t kBlockRows = 8192;  // 64 KiB of numbers: what is packed and read as one
-constexpr std::size_t kLongestName = 255;
+constexpr std::size_t kLongestHdf5Name = 255;
 
 /// An identifier of the library, closed at its end.
 class Id {
@@ -39,14 +39,14 @@ class Id {
   Close close_;
 };
 
-void check(herr_t outcome, const std::string& path) {
+void require_done(herr_t outcome, const std::string& path) {
   if (outcome < 0) throw std::runtime_error(path + ": cannot be written; is the disk full?");
 }
 
 Id text_type(const std::string& path) {
   Id type(H5Tcopy(H5T_C_S1), H5Tclose, path);
-  check(H5Tset_size(type, H5T_VARIABLE), path);
-  check(H5Tset_cset(type, H5T_CSET_UTF8), path);
+  require_done(H5Tset_size(type, H5T_VARIABLE), path);
+  require_done(H5Tset_cset(type, H5T_CSET_UTF8), path);
   return type;
 }
 
@@ -57,7 +57,7 @@ void put_attribute(hid_t object, const char* name, const std::string& text,
   const Id attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
                      path);
   const char* value = text.c_str();
-  check(H5Awrite(attribute, type, &value), path);
+  require_done(H5Awrite(attribute, type, &value), path);
 }
 
 // One data set; rows gather here until a block is full.
@@ -80,9 +80,10 @@ class Column {
     if (held_ == 0) return;
     const hsize_t first = rows_;
     rows_ += held_;
-    check(H5Dset_extent(set_, &rows_), path_);
+    require_done(H5Dset_extent(set_, &rows_), path_);
     const Id file_space(H5Dget_space(set_), H5Sclose, path_);
-    check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, &first, nullptr, &held_, nullptr), path_);
+    require_done(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, &first, nullptr, &held_, nullptr),
+                 path_);
     const Id memory_space(H5Screate_simple(1, &held_, nullptr), H5Sclose, path_);
     std::vector<const char*> pointers;
     for (const std::string& text : values_.texts) pointers.push_back(text.c_str());
@@ -92,7 +93,7 @@ class Column {
         : kind == CellKind::kUnsigned ? values_.unsigneds.data()
         : kind == CellKind::kReal     ? static_cast<const void*>(values_.reals.data())
                                       : pointers.data();
-    check(H5Dwrite(set_, type_, memory_space, file_space, H5P_DEFAULT, first_value), path_);
+    require_done(H5Dwrite(set_, type_, memory_space, file_space, H5P_DEFAULT, first_value), path_);
     values_.clear();
     held_ = 0;
   }
@@ -111,9 +112,9 @@ class Column {
     const hsize_t unlimited = H5S_UNLIMITED;
     const Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose, path_);
     const Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path_);
-    check(H5Pset_chunk(layout, 1, &kBlockRows), path_);
-    if (values_.kind != CellKind::kText) check(H5Pset_shuffle(layout), path_);
-    check(H5Pset_deflate(layout, 1), path_);
+    require_done(H5Pset_chunk(layout, 1, &kBlockRows), path_);
+    if (values_.kind != CellKind::kText) require_done(H5Pset_shuffle(layout), path_);
+    require_done(H5Pset_deflate(layout, 1), path_);
     return {H5Dcreate2(group, name.c_str(), type_, space, H5P_DEFAULT, layout, H5P_DEFAULT),
             H5Dclose, path_};
   }
@@ -134,7 +135,7 @@ class Hdf5Sink : public TableSink {
                H5Gclose, path) {
     put_attribute(group_, "topic", table.topic, path);
     put_attribute(group_, "type", table.type, path);
-    const std::vector<ColumnHead> heads = column_heads(table, kLongestName);
+    const std::vector<ColumnHead> heads = column_heads(table, kLongestHdf5Name);
     columns_.reserve(heads.size());
     for (const ColumnHead& head : heads) columns_.emplace_back(group_, head, path);
   }
@@ -166,8 +167,8 @@ class Hdf5File : public TableFile {
     return std::make_unique<Hdf5Sink>(file_, table, path_);
   }
   void close() override {
-    check(H5Fflush(file_, H5F_SCOPE_GLOBAL), path_);
-    check(file_.close(), path_);
+    require_done(H5Fflush(file_, H5F_SCOPE_GLOBAL), path_);
+    require_done(file_.close(), path_);
   }
   void publish() override { pending_.publish(); }
 

@@ -19,7 +19,7 @@ namespace {
 using recording::Cell;
 using recording::CellKind;
 
-constexpr std::size_t kLongestName = 63;  // namelengthmax of MATLAB
+constexpr std::size_t kLongestMatName = 63;  // namelengthmax of MATLAB
 // A variable of version 5 counts its bytes in 32 bits; MATLAB takes 2 GiB.
 constexpr std::size_t kMostBytes = std::size_t{1} << 31;
 
@@ -149,7 +149,7 @@ class MatSink : public TableSink {
   MatSink(OpenMat& file, TopicTable table)
       : file_(file),
         table_(std::move(table)),
-        heads_(column_heads(table_, kLongestName, {"meta"})) {
+        heads_(column_heads(table_, kLongestMatName, {"meta"})) {
     for (const ColumnHead& head : heads_) columns_.push_back({head.kind});
   }
 

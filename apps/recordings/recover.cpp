@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The metadata does not list each of thousands of damaged chunks.
-constexpr std::size_t kMostFindings = 100;
+constexpr std::size_t kMostNamed = 100;
 
 // The new file, with the topics of the old one under their new numbers.
 class Copy {
@@ -84,7 +84,7 @@ recording::TextMap summary_of(const Recovered& result, const std::string& path) 
                            {"messages", std::to_string(result.messages)},
                            {"lost_bytes", std::to_string(result.lost_bytes)},
                            {"findings", std::to_string(result.findings.size())}};
-  for (std::size_t i = 0; i < std::min(result.findings.size(), kMostFindings); ++i) {
+  for (std::size_t i = 0; i < std::min(result.findings.size(), kMostNamed); ++i) {
     texts["finding " + std::to_string(i)] = result.findings[i];
   }
   return texts;

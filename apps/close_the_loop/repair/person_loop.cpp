@@ -16,7 +16,6 @@ namespace stillhand::close_the_loop {
 namespace {
 
 constexpr double kSettle_s = 2.0;
-constexpr double kMmPerM = 1e3;
 
 // M x'' + B x' + K x = force, friction bringing the stick to rest within a tick (as RG-4).
 class Stick {

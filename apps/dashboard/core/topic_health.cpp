@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "services/core/contract/time_difference.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::dashboard {
 
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kMostLost = 1'000'000'000;  // [ticks] in a product with a period
 
 void note(Lateness& lateness, std::int64_t by_ns, std::int64_t at_ns) {

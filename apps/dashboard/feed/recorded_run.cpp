@@ -17,7 +17,6 @@ namespace stillhand::dashboard {
 
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kStep_ns = kSecond_ns / 10;
 constexpr std::int64_t kLongest_ns = 60 * kSecond_ns;  // bounds the cost of a wrong log time
 

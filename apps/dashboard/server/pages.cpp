@@ -15,9 +15,9 @@ struct Kind {
   const char* type;
 };
 
-constexpr std::array<Kind, 3> kKinds{{{".html", "text/html; charset=utf-8"},
-                                      {".css", "text/css; charset=utf-8"},
-                                      {".js", "text/javascript; charset=utf-8"}}};
+constexpr std::array<Kind, 3> kContentTypes{{{".html", "text/html; charset=utf-8"},
+                                             {".css", "text/css; charset=utf-8"},
+                                             {".js", "text/javascript; charset=utf-8"}}};
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Pages::Pages(const std::filesystem::path& folder) {
     }
   }
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    for (const auto& [suffix, type] : kKinds) {
+    for (const auto& [suffix, type] : kContentTypes) {
       if (entry.path().extension() != suffix || !entry.is_regular_file()) continue;
       pages_["/" + entry.path().filename().string()] = {
           type, recording::read_file(entry.path().string())};

@@ -15,7 +15,7 @@ struct Channel {
   const char* name;
   const char* unit;
 };
-enum Place : std::size_t {
+enum Column : std::size_t {
   kAge,
   kAnswerTime,
   kStepTime,

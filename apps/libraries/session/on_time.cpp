@@ -49,7 +49,7 @@ sensing::DeviceSample noiseless(sensing::DeviceSample sample, double accel_m_s2,
                                 const sensing::Config& sensing) noexcept {
   if (std::isnan(accel_m_s2)) return sample;
   const double along_m_s2 =
-      accel_m_s2 * std::cos(sample.roll_rad) - rig::kGravity_m_s2 * std::sin(sample.roll_rad);
+      accel_m_s2 * std::cos(sample.roll_rad) - kGravity_m_s2 * std::sin(sample.roll_rad);
   sample.accel_y_v = along_m_s2 * sensing.accel_sensitivity_v_m_s2 + sensing.accel_y_offset_v;
   return sample;
 }
@@ -161,8 +161,8 @@ std::vector<std::vector<double>> motion_of(const SessionRecording& session, cons
   const double least_m_s2 = kMoves * rms(channels.front());
   for (std::vector<double> other :
        {sensed([](const auto& s) { return s.accel_x_m_s2(); }),
-        sensed([](const auto& s) { return s.accel_z_m_s2() - rig::kGravity_m_s2; }),
-        sensed([](const auto& s) { return rig::kGravity_m_s2 * s.roll_rad(); })}) {
+        sensed([](const auto& s) { return s.accel_z_m_s2() - kGravity_m_s2; }),
+        sensed([](const auto& s) { return kGravity_m_s2 * s.roll_rad(); })}) {
     if (rms(other) > least_m_s2) channels.push_back(std::move(other));
   }
   return channels;

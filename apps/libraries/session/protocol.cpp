@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
 #include "services/core/motion/excitation.hpp"
 
 namespace stillhand::session {
@@ -149,7 +150,7 @@ PlannedTrial identification_trial(const ProtocolOptions& options) {
   planned.band_order = 4;
   // Peak 0.75 g (paper III-A); a random phase noise of 40 to 120 s peaks near 3.8 times its RMS, so
   // that this RMS just fits under it.
-  planned.peak_m_s2 = 0.75 * 9.80665;
+  planned.peak_m_s2 = 0.75 * kGravity_m_s2;
   planned.rms_m_s2 = planned.peak_m_s2 / 3.8;
   planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, 0);
   if (options.planned) set_ride(planned);

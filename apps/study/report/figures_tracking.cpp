@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apps/study/report/figures.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -15,7 +16,6 @@ using report::Panel;
 using report::Scale;
 using report::Series;
 
-constexpr double kMmPerM = 1000.0;
 constexpr double kExcerptRate_hz = 20.0;
 constexpr std::size_t kFittedLines = 11;  // paper III-C
 constexpr double kHighestPhase_deg = 90.0;

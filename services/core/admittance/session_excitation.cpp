@@ -20,7 +20,7 @@ constexpr double kLowest_hz = 0.05;
 constexpr std::string_view kBeforePeriod = "interleaved multisines: period ";
 constexpr std::string_view kBeforeSeed = " s, seed ";
 constexpr std::string_view kSwapped = ", lines swapped";
-constexpr std::int64_t kFewestPeriods = 5;  // four to analyse, after one that is left out
+constexpr std::int64_t kFewestSentPeriods = 5;  // four to analyse, after one that is left out
 
 }  // namespace
 
@@ -49,7 +49,7 @@ std::vector<signal::Component> motion_components(const SessionPerturbation& pert
                                                  std::int64_t duration_ticks) {
   const Excitation excitation = design(session_excitation(perturbation));
   const std::int64_t period = excitation.motion.samples_per_period();
-  if (duration_ticks % period != 0 || duration_ticks / period < kFewestPeriods) {
+  if (duration_ticks % period != 0 || duration_ticks / period < kFewestSentPeriods) {
     throw ConfigError("perturbation.period_s", std::to_string(perturbation.period_s),
                       "a trial of whole periods, five or more; " + std::to_string(duration_ticks) +
                           " ticks are none");

@@ -9,6 +9,7 @@
 
 #include "services/core/cancellation/value_table.hpp"
 #include "services/core/contract/tick.hpp"
+#include "services/core/contract/units.hpp"
 
 namespace stillhand::cancellation {
 namespace {
@@ -73,7 +74,6 @@ bool of_stick(Channel channel) { return channel == Channel::kTheta || channel ==
 // Largest |H| from a channel.  The platform's accelerations are alike, and its roll tips gravity
 // over; a path from the stick is bounded by the force at its full scale.
 double gain_bound(Channel channel, const ModelBounds& bounds) {
-  constexpr double kGravity_m_s2 = 9.80665;
   if (of_stick(channel)) return bounds.max_path_force_n / full_scale(channel);
   return bounds.max_gain_n_s2_m * (channel == Channel::kRoll ? kGravity_m_s2 : 1.0);
 }

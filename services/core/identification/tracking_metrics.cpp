@@ -7,6 +7,7 @@
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
 #include "services/core/signal/moments.hpp"
 #include "services/core/signal/spectrum.hpp"
 
@@ -176,7 +177,6 @@ TrackingMetrics tracking_metrics(const TrackingRecord& record,
                                  const signal::ReferenceDesign& design,
                                  const TrackingMetricsConfig& config) {
   check(record, design, config);
-  constexpr double kMmPerM = 1000.0;
   const std::vector<double> error_m = difference(record.target_m, record.cursor_m);
   std::vector<double> squared_mm2;
   std::vector<double> inside;

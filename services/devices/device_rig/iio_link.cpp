@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
 #include "services/core/device_rig/iio_value.hpp"
 #include "services/system/process/clock.hpp"
 
@@ -16,7 +17,6 @@ namespace stillhand::device_rig {
 namespace {
 
 constexpr double kTick_hz = 1000.0;
-constexpr double kNsPerMs = 1e6;
 // A reader that stood still reads what waits, as long as that takes no longer than this.
 constexpr std::int64_t kCatchUp_ns = 10'000'000;
 

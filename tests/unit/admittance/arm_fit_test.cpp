@@ -10,7 +10,7 @@
 #include "services/core/rig/parts/body_response.hpp"
 #include "tests/support/simulated_arm.hpp"
 
-namespace stillhand::admittance {
+namespace stillhand::admittance::arm_fit_test {
 namespace {
 
 constexpr double kFitRate_hz = 250.0;
@@ -113,4 +113,4 @@ TEST(ArmFitTest, RefusesLinesWithoutAVariance) {
 }
 
 }  // namespace
-}  // namespace stillhand::admittance
+}  // namespace stillhand::admittance::arm_fit_test

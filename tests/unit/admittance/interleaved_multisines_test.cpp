@@ -10,7 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::admittance {
+namespace stillhand::admittance::interleaved_multisines_test {
 namespace {
 
 using testing::HasSubstr;
@@ -124,4 +124,4 @@ TEST(InterleavedMultisinesTest, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace stillhand::admittance
+}  // namespace stillhand::admittance::interleaved_multisines_test

@@ -8,7 +8,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/simulated_arm.hpp"
 
-namespace stillhand::admittance {
+namespace stillhand::admittance::line_responses_test {
 namespace {
 
 constexpr double kRate_hz = 250.0;
@@ -52,4 +52,4 @@ TEST(LineResponsesTest, RefusesARecordThatIsNotWholePeriods) {
 }
 
 }  // namespace
-}  // namespace stillhand::admittance
+}  // namespace stillhand::admittance::line_responses_test

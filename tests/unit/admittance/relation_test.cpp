@@ -7,7 +7,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/rig_record.hpp"
 
-namespace stillhand::admittance {
+namespace stillhand::admittance::relation_test {
 namespace {
 
 // Three records of the rig: stick free, free with the lines swapped, pegged.
@@ -84,4 +84,4 @@ TEST(RelationTest, RefusesRecordsWithDifferentLines) {
 }
 
 }  // namespace
-}  // namespace stillhand::admittance
+}  // namespace stillhand::admittance::relation_test

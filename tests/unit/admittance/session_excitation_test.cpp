@@ -5,7 +5,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::admittance {
+namespace stillhand::admittance::session_excitation_test {
 namespace {
 
 TEST(SessionExcitationTest, FillsTheBandWithAsManyLinesAsItHasRoomFor) {
@@ -45,4 +45,4 @@ TEST(SessionExcitationTest, RefusesAPeriodOutOfRange) {
 }
 
 }  // namespace
-}  // namespace stillhand::admittance
+}  // namespace stillhand::admittance::session_excitation_test

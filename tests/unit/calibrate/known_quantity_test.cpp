@@ -8,7 +8,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::calibrate {
+namespace stillhand::calibrate::known_quantity_test {
 namespace {
 
 using device_rig::CalibratedSignal;
@@ -42,4 +42,4 @@ TEST(KnownQuantityTest, SaysWhatToDo) {
 }
 
 }  // namespace
-}  // namespace stillhand::calibrate
+}  // namespace stillhand::calibrate::known_quantity_test

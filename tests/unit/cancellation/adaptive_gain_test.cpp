@@ -14,7 +14,7 @@
 #include "services/core/signal/random.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::adaptive_gain_test {
 namespace {
 
 constexpr HandCompliance kHand{1.38, 9.5, 844.0, 0.1};
@@ -129,4 +129,4 @@ TEST(AdaptiveGainTest, StaysBoundedWhateverComes) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::adaptive_gain_test

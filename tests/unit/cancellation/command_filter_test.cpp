@@ -10,7 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::command_filter_test {
 namespace {
 
 // A force held still moves the command by f / (K r).  After 5 s the free oscillation,
@@ -55,4 +55,4 @@ TEST(CommandFilterTest, RefusesWhatIsNoMassOnASpring) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::command_filter_test

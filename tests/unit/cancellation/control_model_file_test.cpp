@@ -10,7 +10,7 @@
 
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::control_model_file_test {
 namespace {
 
 using testing::AllOf;
@@ -153,4 +153,4 @@ TEST(ControlModelFileTest, WhatTheCancellerWouldRefuseIsSaid) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::control_model_file_test

@@ -14,7 +14,7 @@
 #include "services/core/cancellation/parts/countermeasure.hpp"
 #include "tests/support/hostile.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::countermeasure_property_test {
 namespace {
 
 using support::Broken;
@@ -193,4 +193,4 @@ TEST(CountermeasurePropertyTest, NoModelThatIsTakenAnswersAnyFrequencyWithMoreTh
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::countermeasure_property_test

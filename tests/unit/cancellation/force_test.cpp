@@ -13,7 +13,7 @@
 #include "services/core/signal/random.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::force_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -362,4 +362,4 @@ TEST(ForceTest, CostOfAStepIsReported) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::force_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::model_schedule_test {
 namespace {
 
 TEST(ModelScheduleTest, AModelIsTakenAtItsFirstTickAndOnce) {
@@ -85,4 +85,4 @@ TEST(ModelScheduleTest, AClockThatBeginsAgainMakesTheModelWaitAgain) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::model_schedule_test

@@ -12,7 +12,7 @@
 
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::model_watch_test {
 namespace {
 
 constexpr HandCompliance kStiffer{1.5, 14.0, 1500.0, 0.1};  // than the average hand
@@ -110,4 +110,4 @@ TEST(ModelWatchTest, LostTicksAndUnsoundSamplesAreNoChange) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::model_watch_test

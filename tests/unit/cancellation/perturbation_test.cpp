@@ -7,7 +7,7 @@
 
 #include "services/core/cancellation/parts/countermeasure.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::perturbation_test {
 namespace {
 
 constexpr Tick kPeriod = 1000;
@@ -53,4 +53,4 @@ TEST(PerturbationTest, IsTheMultisineOverTheMeasuredTicksAndZeroOutsideTheTrial)
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::perturbation_test

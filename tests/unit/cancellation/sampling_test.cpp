@@ -13,7 +13,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/units.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::sampling_test {
 namespace {
 
 Countermeasure with_gain(const Config& config, double gain_n_s2_m) {
@@ -125,4 +125,4 @@ TEST(SamplingTest, SettingsOutOfRangeAndUnknownNamesAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::sampling_test

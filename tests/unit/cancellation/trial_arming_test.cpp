@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::trial_arming_test {
 namespace {
 
 constexpr Trial kTracking{3, TrialPhase::kTracking, 1000, 500, 100};
@@ -124,4 +124,4 @@ TEST(TrialArmingTest, AMitigationActsWithinTheTrialInPlaceOfCancellation) {
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::trial_arming_test

@@ -13,7 +13,7 @@
 
 #include "tests/support/wait.hpp"
 
-namespace stillhand::cancellation {
+namespace stillhand::cancellation::trial_parts_test {
 namespace {
 
 using cancellation::Part;
@@ -272,4 +272,4 @@ TEST_F(TrialPartsTest, TheFirstModelOfTheForceHasToSettleBeforeATrialThatNeedsIt
 }
 
 }  // namespace
-}  // namespace stillhand::cancellation
+}  // namespace stillhand::cancellation::trial_parts_test

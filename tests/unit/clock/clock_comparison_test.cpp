@@ -8,7 +8,7 @@
 
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::clock {
+namespace stillhand::clock::clock_comparison_test {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -190,4 +190,4 @@ TEST(ClockComparisonTest, StampsThatNoDifferenceCanHoldAreNoExchange) {
 }
 
 }  // namespace
-}  // namespace stillhand::clock
+}  // namespace stillhand::clock::clock_comparison_test

@@ -10,7 +10,7 @@
 #include "apps/close_the_loop/session/session.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::closed_loop_test {
 namespace {
 
 using testing::ElementsAre;
@@ -171,4 +171,4 @@ TEST(ClosedLoopTest, MetricsAreThoseOfTargetAndCursor) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::closed_loop_test

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::conditions_test {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -157,4 +157,4 @@ TEST(LoopDecisionTest, WithoutAnAugmentedModelNothingIsKept) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::conditions_test

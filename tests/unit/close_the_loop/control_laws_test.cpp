@@ -9,7 +9,7 @@
 
 #include "services/core/cancellation/value_table.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::control_laws_test {
 namespace {
 
 using cancellation::Channel;
@@ -144,4 +144,4 @@ TEST(ControlLawsTest, WavesAreAppended) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::control_laws_test

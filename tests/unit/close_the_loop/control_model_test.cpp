@@ -16,7 +16,7 @@
 #include "services/core/population/population.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::control_model_test {
 namespace {
 
 using diagnosis::Effect;
@@ -266,4 +266,4 @@ TEST(AverageHandTest, IsThatOfThePopulationsMeanSubject) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::control_model_test

@@ -11,7 +11,7 @@
 #include "services/core/diagnosis/model/modes.hpp"
 #include "services/core/signal/difference_model.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::control_response_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -224,4 +224,4 @@ TEST(ControlResponseTest, TheErrorIsThatOfTheBand) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::control_response_test

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <random>
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::decision_test {
 namespace {
 
 // Blocks whose mean squares are given; the RMS follows from them.
@@ -114,4 +114,4 @@ TEST(DecisionTest, WithoutAnEffectThereIsNothingToDecide) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::decision_test

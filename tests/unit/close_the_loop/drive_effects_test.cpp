@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::drive_effects_test {
 namespace {
 
 using cancellation::Channel;
@@ -51,4 +51,4 @@ TEST(DriveEffectsTest, OtherEffectsAndChannelsAreLeftOutWithAReason) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::drive_effects_test

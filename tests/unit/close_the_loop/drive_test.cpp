@@ -10,7 +10,7 @@
 #include "services/core/signal/delay_line.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::drive_test {
 namespace {
 
 struct Late {
@@ -94,4 +94,4 @@ TEST(DriveTest, WhatNobodyDeclaredIsFound) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::drive_test

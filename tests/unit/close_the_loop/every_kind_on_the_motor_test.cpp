@@ -21,7 +21,7 @@
 #include "services/files/diagnosis/model_file.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::every_kind_on_the_motor_test {
 namespace {
 
 using cancellation::ControlModel;
@@ -229,4 +229,4 @@ TEST(EveryKindOnTheMotorTest, SoAreSeveralTogether) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::every_kind_on_the_motor_test

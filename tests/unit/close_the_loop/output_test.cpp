@@ -11,7 +11,7 @@
 
 #include "services/files/rig/sealed_file.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::output_test {
 namespace {
 
 using nlohmann::json;
@@ -307,4 +307,4 @@ TEST(OutputTest, EveryFileIsNamedOnceAndIsNoPath) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::output_test

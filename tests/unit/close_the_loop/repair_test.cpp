@@ -12,7 +12,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/population/population.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::repair_test {
 namespace {
 
 constexpr double kGain_kg = 3.0;  // a body without dynamics
@@ -114,4 +114,4 @@ TEST(RepairOutputTest, WhatIsNotPredictedHasTheReasonInPlaceOfNumbers) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::repair_test

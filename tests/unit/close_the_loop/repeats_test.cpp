@@ -6,7 +6,7 @@
 
 #include "apps/close_the_loop/verdict/control_model.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::repeats_test {
 namespace {
 
 session::ProtocolOptions short_protocol() {
@@ -104,4 +104,4 @@ TEST(RepeatsTest, AnInterruptEndsThem) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::repeats_test

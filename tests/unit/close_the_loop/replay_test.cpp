@@ -9,7 +9,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::replay_test {
 namespace {
 
 constexpr double kGain = -3.0;  // [N s^2/m]
@@ -127,4 +127,4 @@ TEST(ReplayTest, TheEndThatIsKeptApartGoesOnWhereTheRestEnds) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::replay_test

@@ -6,7 +6,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::verdict_test {
 namespace {
 
 namespace made = diagnosis::made;
@@ -88,4 +88,4 @@ TEST(VerdictTest, WhatCanBeNamedCountsAndIsFound) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::verdict_test

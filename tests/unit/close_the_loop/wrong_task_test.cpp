@@ -10,7 +10,7 @@
 #include "apps/close_the_loop/verdict/control_model.hpp"
 #include "services/core/contract/tick.hpp"
 
-namespace stillhand::close_the_loop {
+namespace stillhand::close_the_loop::wrong_task_test {
 namespace {
 
 struct Outcome {
@@ -83,4 +83,4 @@ TEST(WrongTaskTest, AModelThatPushesTooHardIsTakenBack) {
 }
 
 }  // namespace
-}  // namespace stillhand::close_the_loop
+}  // namespace stillhand::close_the_loop::wrong_task_test

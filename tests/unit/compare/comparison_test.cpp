@@ -11,7 +11,7 @@
 
 #include "apps/compare/findings.hpp"
 
-namespace stillhand::compare {
+namespace stillhand::compare::comparison_test {
 namespace {
 
 using testing::ElementsAre;
@@ -120,4 +120,4 @@ TEST(FindingsTest, SayWhatWhomAndHowSure) {
 }
 
 }  // namespace
-}  // namespace stillhand::compare
+}  // namespace stillhand::compare::comparison_test

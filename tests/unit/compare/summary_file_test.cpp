@@ -11,7 +11,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::compare {
+namespace stillhand::compare::summary_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -66,4 +66,4 @@ TEST_F(SummaryFileTest, WhatIsNoSummaryIsNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::compare
+}  // namespace stillhand::compare::summary_file_test

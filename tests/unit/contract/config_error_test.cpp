@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace stillhand {
+namespace stillhand::config_error_test {
 namespace {
 
 TEST(ConfigErrorTest, SaysWhatWhereAndWhatWouldBeRight) {
@@ -31,4 +31,4 @@ TEST(ConfigErrorTest, ALongTextIsCutBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace stillhand
+}  // namespace stillhand::config_error_test

@@ -9,7 +9,7 @@
 #include "services/core/contract/expects.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand {
+namespace stillhand::config_field_test {
 namespace {
 
 using testing::HasSubstr;
@@ -125,4 +125,4 @@ TEST(ExpectsTest, ABrokenPreconditionNamesItsFileAndItsCondition) {
 }
 
 }  // namespace
-}  // namespace stillhand
+}  // namespace stillhand::config_field_test

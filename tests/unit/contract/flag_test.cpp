@@ -6,7 +6,7 @@
 #include <bit>
 #include <initializer_list>
 
-namespace stillhand {
+namespace stillhand::flag_test {
 namespace {
 
 // Recordings hold the bits, so each keeps its own for good.
@@ -22,4 +22,4 @@ TEST(FlagTest, EveryReasonHasABitOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace stillhand
+}  // namespace stillhand::flag_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace stillhand {
+namespace stillhand::tick_test {
 namespace {
 
 TEST(TicksInTest, ADurationIsRoundedToTheNearestTick) {
@@ -50,4 +50,4 @@ TEST(TicksInTest, TheResultIsWithinHalfATickOfTheDuration) {
 }
 
 }  // namespace
-}  // namespace stillhand
+}  // namespace stillhand::tick_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand {
+namespace stillhand::time_difference_test {
 namespace {
 
 TEST(TimeDifferenceTest, IsExactUpToThirtyYearsAndNoMoreBeyond) {
@@ -16,4 +16,4 @@ TEST(TimeDifferenceTest, IsExactUpToThirtyYearsAndNoMoreBeyond) {
 }
 
 }  // namespace
-}  // namespace stillhand
+}  // namespace stillhand::time_difference_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace stillhand {
+namespace stillhand::trial_test {
 namespace {
 
 constexpr Tick kLast = Tick{1} << 60;
@@ -95,4 +95,4 @@ TEST(TrialTest, TheLargestSoundTrialHasItsBoundsWhereTheyBelong) {
 }
 
 }  // namespace
-}  // namespace stillhand
+}  // namespace stillhand::trial_test

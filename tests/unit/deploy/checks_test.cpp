@@ -20,7 +20,7 @@
 #include "tests/support/own_domain.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::deploy {
+namespace stillhand::deploy::checks_test {
 namespace {
 
 using testing::AllOf;
@@ -327,4 +327,4 @@ TEST(CheckTest, TheSoftLimitCounts) {
 }
 
 }  // namespace
-}  // namespace stillhand::deploy
+}  // namespace stillhand::deploy::checks_test

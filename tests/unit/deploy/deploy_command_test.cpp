@@ -12,7 +12,7 @@
 #include "tests/support/verb.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::deploy {
+namespace stillhand::deploy::deploy_command_test {
 namespace {
 
 using testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST(DeployCommandTest, AMachineThatIsNoHostIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::deploy
+}  // namespace stillhand::deploy::deploy_command_test

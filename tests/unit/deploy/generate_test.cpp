@@ -19,7 +19,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::deploy {
+namespace stillhand::deploy::generate_test {
 namespace {
 
 using support::text_of;
@@ -310,4 +310,4 @@ TEST(GenerateTest, ANameWithDashesEndsNoXmlComment) {
 }
 
 }  // namespace
-}  // namespace stillhand::deploy
+}  // namespace stillhand::deploy::generate_test

@@ -10,7 +10,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::deploy {
+namespace stillhand::deploy::inventory_test {
 namespace {
 
 using testing::AllOf;
@@ -240,4 +240,4 @@ TEST(InventoryTest, AFileThatIsNotThereIsNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::deploy
+}  // namespace stillhand::deploy::inventory_test

@@ -16,7 +16,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::deploy {
+namespace stillhand::deploy::profiles_test {
 namespace {
 
 using testing::ElementsAre;
@@ -181,4 +181,4 @@ TEST(LabProfilesTest, AnotherFileIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::deploy
+}  // namespace stillhand::deploy::profiles_test

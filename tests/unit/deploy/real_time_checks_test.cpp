@@ -7,7 +7,7 @@
 
 #include <numeric>
 
-namespace stillhand::deploy {
+namespace stillhand::deploy::real_time_checks_test {
 namespace {
 
 using testing::HasSubstr;
@@ -77,4 +77,4 @@ TEST(RealTimeCheckTest, EachIsReadOfThisMachineOnce) {
 }
 
 }  // namespace
-}  // namespace stillhand::deploy
+}  // namespace stillhand::deploy::real_time_checks_test

@@ -24,7 +24,7 @@
 #include "services/files/settings/load.hpp"
 #include "services/files/settings/yaml_text.hpp"
 
-namespace stillhand {
+namespace stillhand::settings_test {
 namespace {
 
 // What stands below the file's first, explaining paragraph, its lines taken out of their comments.
@@ -87,4 +87,4 @@ TEST(DeployedSettingsTest, EveryFileShowsEveryKeyWithItsDefault) {
 }
 
 }  // namespace
-}  // namespace stillhand
+}  // namespace stillhand::settings_test

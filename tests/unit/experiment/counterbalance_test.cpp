@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-namespace stillhand::experiment {
+namespace stillhand::experiment::counterbalance_test {
 namespace {
 
 constexpr std::size_t kMostConditions = 9;
@@ -107,4 +107,4 @@ TEST(CounterbalanceTest, RandomOrdersDifferBetweenParticipantsAndFollowFromTheSe
 }
 
 }  // namespace
-}  // namespace stillhand::experiment
+}  // namespace stillhand::experiment::counterbalance_test

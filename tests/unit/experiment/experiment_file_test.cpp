@@ -12,7 +12,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::experiment {
+namespace stillhand::experiment::experiment_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -136,4 +136,4 @@ TEST(ExperimentFileTest, APlannedComparisonNamesTwoOfTheConditions) {
 }
 
 }  // namespace
-}  // namespace stillhand::experiment
+}  // namespace stillhand::experiment::experiment_file_test

@@ -10,7 +10,7 @@
 #include "apps/experiment/export/bids_texts.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::experiment {
+namespace stillhand::experiment::export_texts_test {
 namespace {
 
 recording::Recording tracking_rows() {
@@ -74,4 +74,4 @@ TEST(ExportTextsTest, TheDescriptionHasWhatTheStandardRequires) {
 }
 
 }  // namespace
-}  // namespace stillhand::experiment
+}  // namespace stillhand::experiment::export_texts_test

@@ -12,7 +12,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::experiment {
+namespace stillhand::experiment::journal_test {
 namespace {
 
 // A file size limit plays the full disk: the system then cuts a write short, as a disk does.
@@ -42,4 +42,4 @@ TEST(JournalTest, AShortWriteLeavesWholeLinesAndIsReportedWithItsReason) {
 }
 
 }  // namespace
-}  // namespace stillhand::experiment
+}  // namespace stillhand::experiment::journal_test

@@ -14,7 +14,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::experiment {
+namespace stillhand::experiment::progress_test {
 namespace {
 
 using testing::HasSubstr;
@@ -239,4 +239,4 @@ TEST_F(ProgressTest, ParticipantsDifferInSeedsUnlessTheyShareThem) {
 }
 
 }  // namespace
-}  // namespace stillhand::experiment
+}  // namespace stillhand::experiment::progress_test

@@ -20,7 +20,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/unit/lab/pause_summary.hpp"
 
-namespace stillhand::experiment {
+namespace stillhand::experiment::session_script_test {
 namespace {
 
 using lab::PromptKind;
@@ -371,4 +371,4 @@ TEST_F(SessionScriptTest, ASimulatedSubjectIsAskedNothing) {
 }
 
 }  // namespace
-}  // namespace stillhand::experiment
+}  // namespace stillhand::experiment::session_script_test

@@ -15,7 +15,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::experiment {
+namespace stillhand::experiment::unblind_test {
 namespace {
 
 using testing::AllOf;
@@ -133,4 +133,4 @@ TEST_F(UnblindTest, TheNoteOfAnOlderVersionIsAnOpening) {
 }
 
 }  // namespace
-}  // namespace stillhand::experiment
+}  // namespace stillhand::experiment::unblind_test

@@ -12,7 +12,7 @@
 #include "tests/support/feedthrough_records.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::arx_test {
 namespace {
 
 using support::body_like_model;
@@ -153,4 +153,4 @@ TEST(ArxTest, UselessRecordsAreRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::arx_test

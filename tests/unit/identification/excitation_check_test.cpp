@@ -8,7 +8,7 @@
 
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::excitation_check_test {
 namespace {
 
 std::vector<double> sines(std::initializer_list<double> frequencies_hz) {
@@ -60,4 +60,4 @@ TEST(ExcitationTest, WhiteNoiseReachesTheLargestOrder) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::excitation_check_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::frequency_response_test {
 namespace {
 
 TEST(FrequencyResponseTest, GivesDecibelsAndDegrees) {
@@ -43,4 +43,4 @@ TEST(FrequencyResponseTest, FrequenciesAreEvenInTheirLogarithm) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::frequency_response_test

@@ -11,7 +11,7 @@
 #include "services/core/rig/parts/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::identifier_test {
 namespace {
 
 // The paper's experiment on the simulated body: two minutes, 0.7 to 4 Hz, stick pegged, 1 kHz.
@@ -105,4 +105,4 @@ TEST(IdentifierTest, AForceOnTheSideOfTheAccelerationIsRefusedLive) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::identifier_test

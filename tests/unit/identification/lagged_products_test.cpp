@@ -8,7 +8,7 @@
 
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::lagged_products_test {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
@@ -58,4 +58,4 @@ TEST(LaggedProductsTest, AdjacentRowsAddUp) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::lagged_products_test

@@ -8,7 +8,7 @@
 #include "tests/support/feedthrough_records.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::model_file_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(ModelFileTest, WhatCannotBeReadIsNotWritten) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::model_file_test

@@ -9,7 +9,7 @@
 #include "services/core/identification/arx.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::output_error_test {
 namespace {
 
 using support::band_noise;
@@ -132,4 +132,4 @@ TEST(OutputErrorTest, AStartOfAnotherRateIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::output_error_test

@@ -10,7 +10,7 @@
 #include "services/core/contract/units.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::paper_preprocessing_test {
 namespace {
 
 std::vector<double> sine(double frequency_hz, double rate_hz, double seconds) {
@@ -98,4 +98,4 @@ TEST(PaperPreprocessingTest, UnusableRecordsAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::paper_preprocessing_test

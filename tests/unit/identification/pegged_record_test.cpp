@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace stillhand::identification {
+namespace stillhand::identification::pegged_record_test {
 namespace {
 
 constexpr Trial kTrial{7, TrialPhase::kPegged, 1000, 5, 100};
@@ -97,4 +97,4 @@ TEST(PeggedRecordTest, MoreThanOnePercentOfLostTicksIsUnusable) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::pegged_record_test

@@ -11,7 +11,7 @@
 #include "services/core/rig/parts/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::rate_conversion_test {
 namespace {
 
 using support::body_like_model;
@@ -164,4 +164,4 @@ TEST_F(HoldCostTest, ConvertedFilterLeavesNoneOfThat) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::rate_conversion_test

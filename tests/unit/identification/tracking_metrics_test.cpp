@@ -12,7 +12,7 @@
 #include "services/core/signal/random.hpp"
 #include "services/core/signal/spectrum.hpp"
 
-namespace stillhand::identification {
+namespace stillhand::identification::tracking_metrics_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -229,4 +229,4 @@ TEST(TrackingMetricsTest, UnusableRecordsAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::identification
+}  // namespace stillhand::identification::tracking_metrics_test

@@ -14,7 +14,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/verb.hpp"
 
-namespace stillhand::identify {
+namespace stillhand::identify::identify_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -152,4 +152,4 @@ TEST_F(IdentifyCommandTest, AModelThatCannotCancelIsNotSaved) {
 }
 
 }  // namespace
-}  // namespace stillhand::identify
+}  // namespace stillhand::identify::identify_command_test

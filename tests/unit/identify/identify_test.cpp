@@ -20,7 +20,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/spoiled_recordings.hpp"
 
-namespace stillhand::identify {
+namespace stillhand::identify::identify_test {
 namespace {
 
 using diagnosis::Measurement;
@@ -314,4 +314,4 @@ TEST(IdentifyTest, WhatChangesWithinARecordingIsNamedAndNotUsable) {
 }
 
 }  // namespace
-}  // namespace stillhand::identify
+}  // namespace stillhand::identify::identify_test

@@ -10,7 +10,7 @@
 #include "services/core/admittance/arm_fit.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::arms_file_test {
 namespace {
 
 nlohmann::json json_of(const admittance::ArmValues& arm) {
@@ -57,4 +57,4 @@ TEST(ArmsFileTest, WhatIsNoArmIsRefusedAndNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::arms_file_test

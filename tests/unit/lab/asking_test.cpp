@@ -3,7 +3,7 @@
 
 #include "tests/unit/lab/stage_fixture.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::asking_test {
 namespace {
 
 class AskingTest : public StageTest {
@@ -77,4 +77,4 @@ TEST_F(AskingTest, InterruptionAndTheEndOfAProcessEndIt) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::asking_test

@@ -12,7 +12,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::check_options_test {
 namespace {
 
 using testing::AllOf;
@@ -194,4 +194,4 @@ TEST_F(CheckOptionsTest, AProfileFileThatIsMissingOrAFolderIsNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::check_options_test

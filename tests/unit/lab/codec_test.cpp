@@ -6,7 +6,7 @@
 
 #include "services/messages/cancellation/codec.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::codec_test {
 namespace {
 
 stillhand_msgs::TopicStatus topic(bool written, std::uint64_t deadline, std::uint64_t cycle,
@@ -160,4 +160,4 @@ TEST(LabCodecTest, PartsOfAnAssignmentComeBackAsTheyWereSent) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::codec_test

@@ -10,7 +10,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::control_model_test {
 namespace {
 
 using cancellation::Channel;
@@ -79,4 +79,4 @@ TEST_F(LabControlModelTest, SettingsThatAreWrongAreNamedWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::control_model_test

@@ -13,7 +13,7 @@
 #include "tests/support/own_domain.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::domain_lock_test {
 namespace {
 
 using testing::AllOf;
@@ -73,4 +73,4 @@ TEST(DomainLockTest, AParticipantOnThePortIsNoHindrance) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::domain_lock_test

@@ -9,7 +9,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::hosts_test {
 namespace {
 
 using testing::AllOf;
@@ -134,4 +134,4 @@ TEST_F(HostsTest, AnInventoryThatIsMissingOrWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::hosts_test

@@ -11,7 +11,7 @@
 
 #include "idl/processes.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::launches_test {
 namespace {
 
 using testing::Contains;
@@ -204,4 +204,4 @@ TEST_F(LaunchesTest, TheSealedEffectReachesTheRigAloneAndNotAsAnArgument) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::launches_test

@@ -15,7 +15,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/unit/lab/pause_summary.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::live_closing_test {
 namespace {
 
 using session::Condition;
@@ -193,4 +193,4 @@ TEST_F(LiveClosingTest, WithoutAModelTheSessionGoesOnWithTheOneItHas) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::live_closing_test

@@ -17,7 +17,7 @@
 #include "services/messages/cancellation/codec.hpp"
 #include "services/messages/display/codec.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::live_path_test {
 namespace {
 
 using session::Condition;
@@ -135,4 +135,4 @@ TEST(LivePathTest, TheBusCostsATickOfTheCommandAndNothingOfTheForce) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::live_path_test

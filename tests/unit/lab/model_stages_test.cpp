@@ -6,7 +6,7 @@
 
 #include "tests/unit/lab/stage_fixture.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::model_stages_test {
 namespace {
 
 using testing::IsEmpty;
@@ -103,4 +103,4 @@ TEST_F(ModelUseTest, NoAnswerIsAFailureAfterFiveSeconds) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::model_stages_test

@@ -11,7 +11,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::output_folder_test {
 namespace {
 
 using testing::AllOf;
@@ -183,4 +183,4 @@ TEST_F(OutputFolderTest, AFileInThePlaceOfTheFolderAndAnEmptyNameAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::output_folder_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/lab/pause_summary.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::pause_verdict_test {
 namespace {
 
 TEST(PauseVerdictTest, CPlusThatLeavesLessIsOnOffer) {
@@ -64,4 +64,4 @@ TEST(PauseVerdictTest, WhatTheCancellerRefusesIsNotOnOffer) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::pause_verdict_test

@@ -14,7 +14,7 @@
 #include "tests/support/wait.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::processes_test {
 namespace {
 
 using deploy::SampleFolder;
@@ -164,4 +164,4 @@ TEST_F(ProcessesTest, EachProcessIsAGroupOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::processes_test

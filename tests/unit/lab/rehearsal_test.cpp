@@ -11,7 +11,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::rehearsal_test {
 namespace {
 
 using testing::AllOf;
@@ -104,4 +104,4 @@ TEST_F(RehearsalTest, ATargetThatLeavesTheScreenIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::rehearsal_test

@@ -16,7 +16,7 @@
 #include "tests/support/wait.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::remote_test {
 namespace {
 
 using deploy::SampleFolder;
@@ -204,4 +204,4 @@ TEST(KeysScriptTest, FindsAKeyThatIsMissingAndAnotherAuthority) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::remote_test

@@ -3,7 +3,7 @@
 
 #include "tests/unit/lab/stage_fixture.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::rest_test {
 namespace {
 
 class RestTest : public StageTest {
@@ -63,4 +63,4 @@ TEST_F(RestTest, WithoutATimeItIsOverAtOnce) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::rest_test

@@ -6,7 +6,7 @@
 
 #include "tests/unit/lab/stage_fixture.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::session_begin_test {
 namespace {
 
 using testing::IsEmpty;
@@ -124,4 +124,4 @@ TEST_F(ClockStartTest, AProcessThatEndsIsTroubleAndNoFailureOfTheClock) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::session_begin_test

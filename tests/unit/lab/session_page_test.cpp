@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace stillhand::lab {
+namespace stillhand::lab::session_page_test {
 namespace {
 
 using session::Condition;
@@ -98,4 +98,4 @@ TEST(SessionPageTest, AConditionThatDidNotRunHasNoFigure) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::session_page_test

@@ -15,7 +15,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/wait.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::stop_key_test {
 namespace {
 
 std::vector<std::byte> bytes_of(std::initializer_list<input_event> events) {
@@ -122,4 +122,4 @@ TEST(StopKeyRefusalTest, WhatIsNoInputDeviceIsRefusedAndStopsNothing) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::stop_key_test

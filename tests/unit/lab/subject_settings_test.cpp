@@ -13,7 +13,7 @@
 #include "services/files/settings/yaml_text.hpp"
 #include "tests/support/folder.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::subject_settings_test {
 namespace {
 
 const std::filesystem::path kConfig = std::filesystem::path(STILLHAND_SOURCE) / "deploy/config";
@@ -70,4 +70,4 @@ TEST(SubjectSettingsTest, ASettingsFolderWithoutTheRigIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::subject_settings_test

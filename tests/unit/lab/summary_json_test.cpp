@@ -9,7 +9,7 @@
 
 #include "places.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::summary_json_test {
 namespace {
 
 using session::Condition;
@@ -335,4 +335,4 @@ TEST(SummaryJsonTest, ARigOfDevicesIsNamedWithItsParts) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::summary_json_test

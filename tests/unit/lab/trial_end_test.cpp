@@ -5,7 +5,7 @@
 
 #include "tests/unit/lab/trial_run_fixture.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::trial_end_test {
 namespace {
 
 TEST_F(TrialRunTest, AnOpenInterlockEndsTheTrialOnceTheForceIsZeroAndRecorded) {
@@ -145,4 +145,4 @@ TEST_F(TrialRunTest, ATrialOnASlowSampleClockEnds) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::trial_end_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/lab/trial_run_fixture.hpp"
 
-namespace stillhand::lab {
+namespace stillhand::lab::trial_run_test {
 namespace {
 
 using testing::IsEmpty;
@@ -275,4 +275,4 @@ TEST_F(TrialRunTest, AnInterlockThatOpensWhileOthersPrepareIsTheReason) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::trial_run_test

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace stillhand::lab {
+namespace stillhand::lab::trouble_test {
 namespace {
 
 using testing::IsEmpty;
@@ -115,4 +115,4 @@ TEST(SeenTest, TheMissesAreThoseOfAllProcessesTogether) {
 }
 
 }  // namespace
-}  // namespace stillhand::lab
+}  // namespace stillhand::lab::trouble_test

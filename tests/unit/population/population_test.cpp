@@ -13,7 +13,7 @@
 #include "services/files/settings/load.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::population {
+namespace stillhand::population::population_test {
 namespace {
 
 std::vector<double> drawn(const Population& population, int count, double (*of)(const Subject&)) {
@@ -130,4 +130,4 @@ TEST(PopulationTest, AMisspeltKeyIsNamedWithTheRightOne) {
 }
 
 }  // namespace
-}  // namespace stillhand::population
+}  // namespace stillhand::population::population_test

@@ -7,7 +7,7 @@
 #include "services/core/rig/parts/body_response.hpp"
 #include "services/core/rig/rig.hpp"
 
-namespace stillhand::population {
+namespace stillhand::population::task_test {
 namespace {
 
 // Eq. SU-3.  Compliance at 0.05 Hz, without the reflex, which only makes holding stiffer.
@@ -31,4 +31,4 @@ TEST(TaskTest, ABodyOfEveryTaskIsOneThatTheRigTakes) {
 }
 
 }  // namespace
-}  // namespace stillhand::population
+}  // namespace stillhand::population::task_test

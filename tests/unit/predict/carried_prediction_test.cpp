@@ -10,7 +10,7 @@
 #include "apps/predict/predict.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::predict {
+namespace stillhand::predict::carried_prediction_test {
 namespace {
 
 using diagnosis::Body;
@@ -77,4 +77,4 @@ TEST(CarriedPredictionTest, MotionAtFrequenciesThatWereNotSeenIsNoted) {
 }
 
 }  // namespace
-}  // namespace stillhand::predict
+}  // namespace stillhand::predict::carried_prediction_test

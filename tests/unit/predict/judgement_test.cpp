@@ -10,7 +10,7 @@
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::predict {
+namespace stillhand::predict::judgement_test {
 namespace {
 
 namespace made = diagnosis::made;
@@ -143,4 +143,4 @@ TEST(JudgementTest, ThePictureShowsBothModelsAndWhatTheyLeave) {
 }
 
 }  // namespace
-}  // namespace stillhand::predict
+}  // namespace stillhand::predict::judgement_test

@@ -20,7 +20,7 @@
 #include "tests/support/verb.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::predict {
+namespace stillhand::predict::predict_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ TEST_F(PredictCommandTest, WithoutTheOutputThereIsNoPicture) {
 }
 
 }  // namespace
-}  // namespace stillhand::predict
+}  // namespace stillhand::predict::predict_command_test

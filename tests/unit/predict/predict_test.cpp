@@ -12,7 +12,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::predict {
+namespace stillhand::predict::predict_test {
 namespace {
 
 using diagnosis::Body;
@@ -279,4 +279,4 @@ TEST(PredictTest, ARecordingOfShortStretchesAloneIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::predict
+}  // namespace stillhand::predict::predict_test

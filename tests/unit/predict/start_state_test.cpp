@@ -13,7 +13,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
-namespace stillhand::predict {
+namespace stillhand::predict::start_state_test {
 namespace {
 
 using diagnosis::Measurement;
@@ -201,4 +201,4 @@ TEST(StateSpreadTest, OfOnePoleIsTheSquareOfItsState) {
 }
 
 }  // namespace
-}  // namespace stillhand::predict
+}  // namespace stillhand::predict::start_state_test

@@ -10,7 +10,7 @@
 #include "idl/idl_text.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::record {
+namespace stillhand::record::field_trigger_test {
 namespace {
 
 TEST(FieldTriggerTest, FiresAtTheCrossingAndNotAgainBeforeItWasBack) {
@@ -133,4 +133,4 @@ TEST(FieldTriggerTest, EveryOtherTextIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::record
+}  // namespace stillhand::record::field_trigger_test

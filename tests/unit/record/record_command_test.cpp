@@ -10,7 +10,7 @@
 
 #include "tests/support/verb.hpp"
 
-namespace stillhand::record {
+namespace stillhand::record::record_command_test {
 namespace {
 
 using testing::AllOf;
@@ -64,4 +64,4 @@ TEST(RecordCommandTest, AnUnknownCompressionNamesThoseThereAre) {
 }
 
 }  // namespace
-}  // namespace stillhand::record
+}  // namespace stillhand::record::record_command_test

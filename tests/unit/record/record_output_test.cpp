@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace stillhand::record {
+namespace stillhand::record::record_output_test {
 namespace {
 
 using testing::AllOf;
@@ -80,4 +80,4 @@ TEST(PrintProgressTest, AFileGetsNothing) {
 }
 
 }  // namespace
-}  // namespace stillhand::record
+}  // namespace stillhand::record::record_output_test

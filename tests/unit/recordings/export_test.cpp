@@ -11,7 +11,7 @@
 #include "services/core/recording/csv.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
-namespace stillhand::recordings {
+namespace stillhand::recordings::export_test {
 namespace {
 
 using testing::HasSubstr;
@@ -263,4 +263,4 @@ TEST_F(ExportTest, GivenUpAtAnyMomentItLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace stillhand::recordings
+}  // namespace stillhand::recordings::export_test

@@ -6,7 +6,7 @@
 
 #include "apps/recordings/info.hpp"
 
-namespace stillhand::recordings {
+namespace stillhand::recordings::info_output_test {
 namespace {
 
 using testing::AllOf;
@@ -120,4 +120,4 @@ TEST(InfoJsonTest, TextsThatAreNotUtf8AreStillJsonAndUncountedTicksAreNull) {
 }
 
 }  // namespace
-}  // namespace stillhand::recordings
+}  // namespace stillhand::recordings::info_output_test

@@ -8,7 +8,7 @@
 #include "services/core/recording/mcap/mcap_loss.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
-namespace stillhand::recordings {
+namespace stillhand::recordings::info_test {
 namespace {
 
 using testing::HasSubstr;
@@ -174,4 +174,4 @@ TEST_F(InfoTest, AFileThatMayNotBeReadIsRefusedWithTheSystemsReason) {
 }
 
 }  // namespace
-}  // namespace stillhand::recordings
+}  // namespace stillhand::recordings::info_test

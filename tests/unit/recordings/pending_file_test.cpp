@@ -8,7 +8,7 @@
 
 #include "tests/unit/recordings/sample_recording.hpp"
 
-namespace stillhand::recordings {
+namespace stillhand::recordings::pending_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -84,4 +84,4 @@ TEST_F(PendingFileTest, AFileThatWasNeverWrittenOrHasNoFolderIsARunTimeError) {
 }
 
 }  // namespace
-}  // namespace stillhand::recordings
+}  // namespace stillhand::recordings::pending_file_test

@@ -10,7 +10,7 @@
 #include "apps/recordings/export.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
-namespace stillhand::recordings {
+namespace stillhand::recordings::ros2_bag_test {
 namespace {
 
 using testing::Contains;
@@ -64,4 +64,4 @@ TEST_F(Ros2BagTest, ARecordingOfSomethingElseIsRefusedAndNoFileIsLeft) {
 }
 
 }  // namespace
-}  // namespace stillhand::recordings
+}  // namespace stillhand::recordings::ros2_bag_test

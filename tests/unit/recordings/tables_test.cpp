@@ -15,7 +15,7 @@
 #include "apps/recordings/mat_tables.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
-namespace stillhand::recordings {
+namespace stillhand::recordings::tables_test {
 namespace {
 
 using recording::Cell;
@@ -203,4 +203,4 @@ TEST_F(CsvTablesTest, ATableOfManyBlocksHasEveryRowOnce) {
 }
 
 }  // namespace
-}  // namespace stillhand::recordings
+}  // namespace stillhand::recordings::tables_test

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string_view>
 
-namespace stillhand::replay {
+namespace stillhand::replay::keyboard_test {
 namespace {
 
 constexpr long kPatience_ns = 900'000'000;
@@ -110,4 +110,4 @@ TEST_F(KeyboardTest, AFileAsStandardInputGivesNoKeys) {
 }
 
 }  // namespace
-}  // namespace stillhand::replay
+}  // namespace stillhand::replay::keyboard_test

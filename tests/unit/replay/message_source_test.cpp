@@ -13,7 +13,7 @@
 #include "services/core/recording/mcap/mcap_writer.hpp"
 #include "tests/support/folder.hpp"
 
-namespace stillhand::replay {
+namespace stillhand::replay::message_source_test {
 namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;
@@ -192,4 +192,4 @@ TEST_F(MessageSourceTest, AnySeekGivesTheStateOfBeforeAndTheMessagesOfItsSpan) {
 }
 
 }  // namespace
-}  // namespace stillhand::replay
+}  // namespace stillhand::replay::message_source_test

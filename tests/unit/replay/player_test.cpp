@@ -14,7 +14,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/wait.hpp"
 
-namespace stillhand::replay {
+namespace stillhand::replay::player_test {
 namespace {
 
 using recording::HeldMessage;
@@ -274,4 +274,4 @@ TEST_F(PlayerTest, AfterASeekTheMessagesAreNotLate) {
 }
 
 }  // namespace
-}  // namespace stillhand::replay
+}  // namespace stillhand::replay::player_test

@@ -5,7 +5,7 @@
 #include "apps/replay/remote.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::replay {
+namespace stillhand::replay::remote_command_test {
 namespace {
 
 using testing::AllOf;
@@ -50,4 +50,4 @@ TEST(ParseCommandTest, EveryOtherTextIsRefusedWithTheCommandsThereAre) {
 }
 
 }  // namespace
-}  // namespace stillhand::replay
+}  // namespace stillhand::replay::remote_command_test

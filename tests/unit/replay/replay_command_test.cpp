@@ -10,7 +10,7 @@
 
 #include "tests/support/verb.hpp"
 
-namespace stillhand::replay {
+namespace stillhand::replay::replay_command_test {
 namespace {
 
 using testing::AllOf;
@@ -58,4 +58,4 @@ TEST(ReplayCommandTest, AnUnknownRemoteCommandIsRefusedBeforeTheBusIsJoined) {
 }
 
 }  // namespace
-}  // namespace stillhand::replay
+}  // namespace stillhand::replay::replay_command_test

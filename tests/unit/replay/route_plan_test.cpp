@@ -13,7 +13,7 @@
 #include "tests/support/own_domain.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::replay {
+namespace stillhand::replay::route_plan_test {
 namespace {
 
 using recording::ChannelId;
@@ -175,4 +175,4 @@ TEST_F(RoutePlanTest, PatternsThatSelectNoTopicAreRefusedWithTheTopicsThereAre) 
 }
 
 }  // namespace
-}  // namespace stillhand::replay
+}  // namespace stillhand::replay::route_plan_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::rig {
+namespace stillhand::rig::body_response_test {
 namespace {
 
 const BodyConfig kBody;
@@ -103,4 +103,4 @@ TEST(BodyResponseTest, DrivingPointMobilityIsPositiveReal) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::body_response_test

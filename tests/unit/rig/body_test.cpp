@@ -11,7 +11,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/rig/parts/body_response.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::body_test {
 namespace {
 
 constexpr double kDt_s = kControlPeriod_s;
@@ -325,4 +325,4 @@ TEST(BodyTest, AReflexStiffensTheShoulderAtRest) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::body_test

@@ -12,7 +12,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/rig/parts/body.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::chain_effect_test {
 namespace {
 
 using Spring = ChainEffect::Spring;
@@ -234,4 +234,4 @@ TEST(ChainEffectTest, AnArmThatTightensPassesFromItsOwnStiffnessToTheLast) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::chain_effect_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::rig {
+namespace stillhand::rig::interlock_report_test {
 namespace {
 
 TEST(InterlockReportTest, ReportsTheOpeningAndTheZeroForceOnceEach) {
@@ -41,4 +41,4 @@ TEST(InterlockReportTest, ReportsAnEmergencyStopAfterAnotherOpening) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::interlock_report_test

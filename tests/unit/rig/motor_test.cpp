@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-namespace stillhand::rig {
+namespace stillhand::rig::motor_test {
 namespace {
 
 constexpr double kLever_m = 0.1;
@@ -126,4 +126,4 @@ TEST(MotorTest, AGapClearsTheDelay) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::motor_test

@@ -12,7 +12,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/rig/rig.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::neuromuscular_test {
 namespace {
 
 constexpr int kSecond = 1000;
@@ -250,4 +250,4 @@ TEST(NeuromuscularTest, TheSameSeedGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::neuromuscular_test

@@ -14,7 +14,7 @@
 #include "services/core/rig/parts/body.hpp"
 #include "services/core/rig/rig.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::outside_draw_test {
 namespace {
 
 using Spring = ChainEffect::Spring;
@@ -153,4 +153,4 @@ TEST(OutsideEffectTest, TheGripStiffensWithTheVibrationsRunningSize) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::outside_draw_test

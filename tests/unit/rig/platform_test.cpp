@@ -11,7 +11,7 @@
 
 #include "services/core/contract/units.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::platform_test {
 namespace {
 
 constexpr double kDt_s = kControlPeriod_s;
@@ -184,4 +184,4 @@ TEST(PlatformTest, RefusesALagThatMakesTheLoopUnstable) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::platform_test

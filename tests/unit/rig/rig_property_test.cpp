@@ -14,7 +14,7 @@
 #include "services/system/process/interlock.hpp"
 #include "tests/support/hostile.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::rig_property_test {
 namespace {
 
 using support::Broken;
@@ -179,4 +179,4 @@ TEST(RigPropertyTest, NoSequenceDrivesTheMotorBeyondForceSlewOrDuration) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::rig_property_test

@@ -12,7 +12,7 @@
 
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::rig_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -279,4 +279,4 @@ TEST(RigTest, NamesTheFieldThatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::rig_test

@@ -9,7 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/folder.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::sealed_file_test {
 namespace {
 
 class SealedFileTest : public testing::Test {
@@ -85,4 +85,4 @@ TEST_F(SealedFileTest, NoncesDiffer) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::sealed_file_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::rig {
+namespace stillhand::rig::sensor_noise_test {
 namespace {
 
 constexpr int kDraws = 2000000;
@@ -68,4 +68,4 @@ TEST(SensorNoiseTest, StreamsOfOneSeedAreUnrelated) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::sensor_noise_test

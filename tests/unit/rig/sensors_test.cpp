@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::rig {
+namespace stillhand::rig::sensors_test {
 namespace {
 
 constexpr SensorInput kRest{0.0, 0.0, kGravity_m_s2, 0.0, 0.0, 0.0};
@@ -106,4 +106,4 @@ TEST(SensorsTest, TheSameSeedGivesTheSameSamplesAndAnotherSeedOthers) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::sensors_test

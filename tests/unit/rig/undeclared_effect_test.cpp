@@ -14,7 +14,7 @@
 #include "services/core/rig/undeclared/effect_draw.hpp"
 #include "services/core/rig/undeclared/effect_sizing.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::rig::undeclared_effect_test {
 namespace {
 
 constexpr PlatformState kMoving{0.0, 0.1, 1.0};
@@ -264,4 +264,4 @@ TEST(UndeclaredEffectDeathTest, ARigWhoseEffectWasOpenedStepsNoMore) {
 }
 
 }  // namespace
-}  // namespace stillhand::rig
+}  // namespace stillhand::rig::undeclared_effect_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::cpu_share_test {
 namespace {
 
 TEST(ShareMeterTest, TellsTheShareOfEachWholeSecond) {
@@ -69,4 +69,4 @@ TEST(HostCpuTest, IsAShareOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::cpu_share_test

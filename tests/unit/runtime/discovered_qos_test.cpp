@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::discovered_qos_test {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -103,4 +103,4 @@ TEST(OfferedQosTest, TheLimitsHoldTheDepthOfEveryInstance) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::discovered_qos_test

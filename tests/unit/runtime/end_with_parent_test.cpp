@@ -7,7 +7,7 @@
 
 #include "services/system/process/real_time.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::end_with_parent_test {
 namespace {
 
 /// How a child ends that is told of this parent.
@@ -31,4 +31,4 @@ TEST(EndWithParentTest, AParentThatHasEndedAlreadyEndsTheChild) {
 TEST(EndWithParentTest, AChildOfALivingParentGoesOn) { EXPECT_EQ(end_of_child(getpid()), 0); }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::end_with_parent_test

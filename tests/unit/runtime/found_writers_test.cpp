@@ -7,7 +7,7 @@
 #include "idl/idl_text.hpp"
 #include "tests/unit/runtime/announced.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::found_writers_test {
 namespace {
 
 using announced::gone;
@@ -188,4 +188,4 @@ TEST(SampleWritersTest, AnEntryIsTheWriterOfTheSampleAndStaysWhereItIs) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::found_writers_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/wait.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::handover_test {
 namespace {
 
 // Counts its own kind, so that a leak or a double free shows without a sanitizer too.
@@ -189,4 +189,4 @@ TEST(HandoverTest, WhatWasTakenLivesUntilTheNextTake) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::handover_test

@@ -8,7 +8,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::host_lock_test {
 namespace {
 
 TEST(HostLockTest, ANameHasOneOwnerUntilItEnds) {
@@ -22,4 +22,4 @@ TEST(HostLockTest, ANameHasOneOwnerUntilItEnds) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::host_lock_test

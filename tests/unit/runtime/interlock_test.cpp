@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::interlock_test {
 namespace {
 
 Trial trial_number(std::int64_t number, Tick start) {
@@ -84,4 +84,4 @@ TEST(InterlockTest, NoSequenceOfTrialsDeathsAndStopsGivesAForceByItsOwnRules) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::interlock_test

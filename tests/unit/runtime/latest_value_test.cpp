@@ -5,7 +5,7 @@
 
 #include <thread>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::latest_value_test {
 namespace {
 
 struct Pair {
@@ -45,4 +45,4 @@ TEST(LatestValueTest, IsNeverTornNorGoesBack) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::latest_value_test

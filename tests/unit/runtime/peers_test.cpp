@@ -10,7 +10,7 @@
 #include "idl/topics.hpp"
 #include "tests/unit/runtime/announced.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::peers_test {
 namespace {
 
 using announced::gone;
@@ -294,4 +294,4 @@ TEST_F(PeersTest, AnyOrderOfLifeSignsGivesTheSameAnswers) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::peers_test

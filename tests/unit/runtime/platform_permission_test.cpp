@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::platform_permission_test {
 namespace {
 
 // Covers 40 to 159; the measured part begins at 50.
@@ -101,4 +101,4 @@ TEST(PlatformPermissionTest, AfterAStopItHoldsForGood) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::platform_permission_test

@@ -8,7 +8,7 @@
 
 #include <thread>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::real_time_test {
 namespace {
 
 struct Scheduling {
@@ -86,4 +86,4 @@ TEST(OrdinaryWhileTest, AThreadGetsItsSchedulingBack) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::real_time_test

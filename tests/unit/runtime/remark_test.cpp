@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::remark_test {
 namespace {
 
 using namespace std::string_literals;
@@ -22,4 +22,4 @@ TEST(RemarkTest, WithoutAVerbTheProgramAloneIsThePrefix) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::remark_test

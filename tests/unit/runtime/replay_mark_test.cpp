@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::replay_mark_test {
 namespace {
 
 TEST(ReplayMarkTest, IsRecognisedAloneAndBeforeOtherUserData) {
@@ -31,4 +31,4 @@ TEST(ReplayMarkTest, IsNotRecognisedWithAByteMissingOrChanged) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::replay_mark_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::run_jobs_test {
 namespace {
 
 TEST(RunJobsTest, EveryIndexRunsOnceWhateverTheNumberOfThreads) {
@@ -73,4 +73,4 @@ TEST(RunJobsTest, AfterOnDoneSaidStopNoFurtherJobStarts) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::run_jobs_test

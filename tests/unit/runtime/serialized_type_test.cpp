@@ -15,7 +15,7 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/type_tag.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::serialized_type_test {
 namespace {
 
 template <typename Message>
@@ -183,4 +183,4 @@ TEST(SerializedTypeTest, KeepsTheBytesAsTheyCame) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::serialized_type_test

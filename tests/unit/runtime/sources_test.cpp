@@ -9,7 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/unit/runtime/announced.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::sources_test {
 namespace {
 
 using announced::handle_of;
@@ -313,4 +313,4 @@ TEST(SourcesCodecTest, AParticipantIsTheSameAfterTheBusAndNonsenseIsNothing) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::sources_test

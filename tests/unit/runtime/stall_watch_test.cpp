@@ -18,7 +18,7 @@
 #include "services/system/process/clock.hpp"
 #include "tests/support/wait.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::stall_watch_test {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -228,4 +228,4 @@ TEST(StallWatchTest, NamesTheProgramThatHadTheProcessor) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::stall_watch_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/wait.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::stop_test {
 namespace {
 
 /// Ends with 0 when the signal became a request.
@@ -109,4 +109,4 @@ TEST(EndAfterStopDeathTest, WorkThatAnswersEndsByItself) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::stop_test

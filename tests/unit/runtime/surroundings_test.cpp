@@ -10,7 +10,7 @@
 
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::surroundings_test {
 namespace {
 
 using testing::AllOf;
@@ -50,4 +50,4 @@ TEST(SurroundingsTest, AVariableThatSendsFastDdsToAServerIsNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::surroundings_test

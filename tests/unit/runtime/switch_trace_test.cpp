@@ -9,7 +9,7 @@
 #include "services/system/process/stall_watch.hpp"
 #include "tests/support/folder.hpp"
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::switch_trace_test {
 namespace {
 
 constexpr std::int64_t kMs_ns = 1'000'000;
@@ -106,4 +106,4 @@ TEST(SwitchTraceTest, WithoutRightsIsNotAvailableAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::switch_trace_test

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::trial_codec_test {
 namespace {
 
 stillhand_msgs::TrialControl message() {
@@ -68,4 +68,4 @@ TEST(TrialCodecTest, APhaseOfAnotherVersionCoversNoTick) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::trial_codec_test

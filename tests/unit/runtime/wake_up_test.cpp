@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-namespace stillhand::runtime {
+namespace stillhand::runtime::wake_up_test {
 namespace {
 
 constexpr std::int64_t kLong_ns = 60 * kNsPerSecond;  // a guard: a test that waits so long fails
@@ -61,4 +61,4 @@ TEST(WakeUpTest, ASenderWithoutAPauseDoesNotHoldIt) {
 }
 
 }  // namespace
-}  // namespace stillhand::runtime
+}  // namespace stillhand::runtime::wake_up_test

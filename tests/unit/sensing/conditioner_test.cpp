@@ -13,7 +13,7 @@
 
 #include "services/core/contract/units.hpp"
 
-namespace stillhand::sensing {
+namespace stillhand::sensing::conditioner_test {
 namespace {
 
 constexpr double kDt_s = kControlPeriod_s;
@@ -209,4 +209,4 @@ TEST(ConditionerTest, NamesTheFieldThatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace stillhand::sensing
+}  // namespace stillhand::sensing::conditioner_test

@@ -11,7 +11,7 @@
 #include "services/core/sensing/conditioner.hpp"
 #include "services/core/signal/butterworth.hpp"
 
-namespace stillhand::sensing {
+namespace stillhand::sensing::round_trip_test {
 namespace {
 
 DeviceSample device_sample(Tick tick, const rig::RawSample& raw) {
@@ -116,4 +116,4 @@ TEST(RoundTripTest, KeepsTheFeedthroughOfAPeggedTrial) {
 }
 
 }  // namespace
-}  // namespace stillhand::sensing
+}  // namespace stillhand::sensing::round_trip_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::session {
+namespace stillhand::session::clock_line_test {
 namespace {
 
 stillhand_msgs::ClockOffset offset(const char* service, std::int64_t stamp_ns,
@@ -43,4 +43,4 @@ TEST(ClockLineTest, TheUncertaintyIsTheWorstOfTheProcess) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::clock_line_test

@@ -14,7 +14,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::conditions_test {
 namespace {
 
 std::vector<PlannedTrial> planned(const std::string& conditions) {
@@ -129,4 +129,4 @@ TEST(ConditionsTest, AMitigatedTrialCarriesItsPartsAndDoesNotPassForC) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::conditions_test

@@ -12,7 +12,7 @@
 
 #include "tests/support/stalled_session.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::force_budget_test {
 namespace {
 
 using tests::configs_of;
@@ -142,4 +142,4 @@ TEST(ForceBudgetTest, WhatTheFileLostIsUnknownAndNotLate) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::force_budget_test

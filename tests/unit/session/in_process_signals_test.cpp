@@ -11,7 +11,7 @@
 
 #include "apps/libraries/session/in_process.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::in_process_signals_test {
 namespace {
 
 constexpr double kShortTrial_s = 5.0;
@@ -193,4 +193,4 @@ TEST(InProcessSignalsTest, AStillPlatformFeedsAlmostNothingThrough) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::in_process_signals_test

@@ -11,7 +11,7 @@
 
 #include "services/core/signal/reference.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::in_process_test {
 namespace {
 
 constexpr double kTrial_s = 60.0;
@@ -142,4 +142,4 @@ TEST(InProcessLoopTest, TheMotionDoesNotDependOnTheWaitForTheAnswer) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::in_process_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/stalled_session.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::lateness_channels_test {
 namespace {
 
 double sum_of(const recording::Recording& rows, const char* channel) {
@@ -49,4 +49,4 @@ TEST(LatenessChannelsTest, AgeGrowsWhereNoAnswerIsUsed) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::lateness_channels_test

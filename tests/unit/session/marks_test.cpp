@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace stillhand::session {
+namespace stillhand::session::marks_test {
 namespace {
 
 using namespace stillhand_msgs;
@@ -103,4 +103,4 @@ TEST(MarkTest, AModelThatNoLongerHoldsSaysSinceWhen) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::marks_test

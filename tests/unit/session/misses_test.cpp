@@ -10,7 +10,7 @@
 
 #include "services/core/contract/tick.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::misses_test {
 namespace {
 
 using testing::ElementsAre;
@@ -213,4 +213,4 @@ TEST(MissesTest, TheReasonIsWhatTheProcessSaidOfThisSilence) {
 TEST(MissesTest, AnEmptyRecordingHasNone) { EXPECT_THAT(misses_in({}), IsEmpty()); }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::misses_test

@@ -10,7 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::protocol_test {
 namespace {
 
 ProtocolOptions three_conditions(std::uint64_t seed) {
@@ -276,4 +276,4 @@ TEST(CheckSeedTest, AnythingElseIsRefusedWithTheWordAndTheLargest) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::protocol_test

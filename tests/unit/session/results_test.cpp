@@ -15,7 +15,7 @@
 
 #include "tests/unit/session/recorded_session.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::results_test {
 namespace {
 
 using made::acceleration_m_s2;
@@ -379,4 +379,4 @@ TEST(EvaluateTest, WithoutAModelThereIsNoneAndNoCost) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::results_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace stillhand::session {
+namespace stillhand::session::sensed_share_test {
 namespace {
 
 constexpr double kRate_hz = 100.0;
@@ -87,4 +87,4 @@ TEST(SensedShareTest, TrialsOfTwoLengthsAreComparedOverTheShorterOne) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::sensed_share_test

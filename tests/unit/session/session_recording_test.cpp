@@ -10,7 +10,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/unit/session/recorded_session.hpp"
 
-namespace stillhand::session {
+namespace stillhand::session::session_recording_test {
 namespace {
 
 using made::file_of;
@@ -154,4 +154,4 @@ TEST(SessionRecordingTest, AMissingFileIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::session_recording_test

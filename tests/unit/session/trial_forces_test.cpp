@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::session {
+namespace stillhand::session::trial_forces_test {
 namespace {
 
 TEST(TrialForcesTest, TheMotorTakesAwayWhatItOpposes) {
@@ -52,4 +52,4 @@ TEST(TrialForcesTest, NothingHasNoForce) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::trial_forces_test

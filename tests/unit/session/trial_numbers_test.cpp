@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-namespace stillhand::session {
+namespace stillhand::session::trial_numbers_test {
 namespace {
 
 TEST(TrialNumbersTest, ARowReadsThePlaceThatItNamesInItsUnit) {
@@ -43,4 +43,4 @@ TEST(TrialNumbersTest, WhatIsReadElsewhereHasTheShapeForIt) {
 }
 
 }  // namespace
-}  // namespace stillhand::session
+}  // namespace stillhand::session::trial_numbers_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::signal {
+namespace stillhand::signal::band_pass_test {
 namespace {
 
 constexpr double kRateHz = 1000.0;
@@ -41,4 +41,4 @@ TEST(BandPassTest, ResetForgets) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::band_pass_test

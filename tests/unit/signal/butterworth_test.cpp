@@ -10,7 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::signal {
+namespace stillhand::signal::butterworth_test {
 namespace {
 
 struct Design {
@@ -99,4 +99,4 @@ TEST(ButterworthSetupTest, AWholeRecordIsFilteredFromRest) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::butterworth_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::signal {
+namespace stillhand::signal::cycle_monitor_test {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -64,4 +64,4 @@ TEST(CycleMonitorTest, TakesAnyLatencyWithoutLeavingItsBins) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::cycle_monitor_test

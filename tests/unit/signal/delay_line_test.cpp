@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::signal {
+namespace stillhand::signal::delay_line_test {
 namespace {
 
 TEST(DelayLineTest, GivesTheInputOfThatManySamplesAgo) {
@@ -35,4 +35,4 @@ TEST(DelayLineTest, TheDelayMayChangeFromSampleToSample) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::delay_line_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillhand::signal {
+namespace stillhand::signal::difference_model_test {
 namespace {
 
 // f(n) = 2 a(n) + 3 a(n-1) + 0.5 f(n-1) - 0.25 f(n-2): so d_1 = -0.5, d_2 = 0.25 (Eq. SG-12).
@@ -73,4 +73,4 @@ TEST(DifferenceModelTest, MalformedModelsAreSeen) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::difference_model_test

@@ -9,7 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::signal {
+namespace stillhand::signal::force_envelope_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -106,4 +106,4 @@ TEST(ForceEnvelopeTest, LimitsOutsideTheirRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::force_envelope_test

@@ -14,7 +14,7 @@
 #include "services/core/signal/random.hpp"
 #include "services/core/signal/second_order_lag.hpp"
 
-namespace stillhand::signal {
+namespace stillhand::signal::growing_oscillation_test {
 namespace {
 
 struct Found {
@@ -157,4 +157,4 @@ TEST(GrowingOscillationTest, AFloorAboveTheCeilingIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::growing_oscillation_test

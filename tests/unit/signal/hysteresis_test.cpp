@@ -11,7 +11,7 @@
 
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::signal {
+namespace stillhand::signal::hysteresis_test {
 namespace {
 
 using testing::ElementsAre;
@@ -143,4 +143,4 @@ TEST(HysteresisOperatorTest, ItIsNoSteeperThanStated) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::hysteresis_test

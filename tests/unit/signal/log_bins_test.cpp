@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::signal {
+namespace stillhand::signal::log_bins_test {
 namespace {
 
 TEST(LogBinsTest, EveryBinBeginsOneAfterTheEdgeOfTheBinBefore) {
@@ -29,4 +29,4 @@ TEST(LogBinsTest, ValuesBelowTheLinearBinsAreExact) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::log_bins_test

@@ -13,7 +13,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::signal {
+namespace stillhand::signal::multisine_test {
 namespace {
 
 constexpr std::int64_t kPeriod = 10'000;
@@ -108,4 +108,4 @@ TEST(SchroederPhasesTest, CrestFactorOfAFlatCombIsBelowTwo) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::multisine_test

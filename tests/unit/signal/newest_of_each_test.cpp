@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::signal {
+namespace stillhand::signal::newest_of_each_test {
 namespace {
 
 TEST(NewestOfEachTest, ARequestCountsOnceWhateverOthersAskBetween) {
@@ -24,4 +24,4 @@ TEST(NewestOfEachTest, StrangersDoNotMakeItForgetWhoStillAsks) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::newest_of_each_test

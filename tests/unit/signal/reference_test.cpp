@@ -10,7 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/signal/spectrum.hpp"
 
-namespace stillhand::signal {
+namespace stillhand::signal::reference_test {
 namespace {
 
 TEST(ReferenceDesignTest, IsThePapersAtThreeMinutes) {
@@ -135,4 +135,4 @@ TEST(ReferenceSignalTest, WhatCannotBeSampledIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::reference_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace stillhand::signal {
+namespace stillhand::signal::running_rms_test {
 namespace {
 
 // Eq. SG-17: after a step of 3 the mean square is 9 (1 - exp(-t/T)); the discrete steps differ from
@@ -22,4 +22,4 @@ TEST(RunningRmsTest, ApproachesTheRmsWithItsMemory) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::running_rms_test

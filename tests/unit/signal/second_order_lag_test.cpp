@@ -7,7 +7,7 @@
 
 #include "services/core/contract/tick.hpp"
 
-namespace stillhand::signal {
+namespace stillhand::signal::second_order_lag_test {
 namespace {
 
 constexpr double kW_rad_s = 13.0;
@@ -65,4 +65,4 @@ TEST(SecondOrderLagTest, ResetPutsItToRest) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::second_order_lag_test

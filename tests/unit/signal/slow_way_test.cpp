@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::signal {
+namespace stillhand::signal::slow_way_test {
 namespace {
 
 // Eq. SG-21: the bounds of its header, for distances up to the travel and beyond.
@@ -42,4 +42,4 @@ TEST(SlowWayTest, AFartherPlaceTakesLonger) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::slow_way_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stillhand::signal {
+namespace stillhand::signal::smooth_step_test {
 namespace {
 
 TEST(SmoothStepTest, ItRestsAtBothEnds) {
@@ -27,4 +27,4 @@ TEST(SmoothStepTest, SpeedAndBendAreItsDerivatives) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::smooth_step_test

@@ -10,7 +10,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::signal {
+namespace stillhand::signal::spectrum_test {
 namespace {
 
 std::vector<double> white(std::size_t count, std::uint64_t seed) {
@@ -158,4 +158,4 @@ TEST(SpectrumTest, WhatCannotBeEstimatedIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::signal
+}  // namespace stillhand::signal::spectrum_test

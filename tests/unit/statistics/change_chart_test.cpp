@@ -8,7 +8,7 @@
 
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::change_chart_test {
 namespace {
 
 /// Correlated, with unequal spreads, about a mean that is not zero.
@@ -79,4 +79,4 @@ TEST(ChangeChartTest, ValuesThatNeverDifferAreNoChange) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::change_chart_test

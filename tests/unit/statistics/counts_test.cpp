@@ -10,7 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::counts_test {
 namespace {
 
 // For none of n the upper end is 1 - 0.025^(1/n), by hand.
@@ -77,4 +77,4 @@ TEST(CountsTest, RefusesWhatIsNoCount) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::counts_test

@@ -10,7 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/statistics_golden.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::descriptive_test {
 namespace {
 
 namespace golden = stillhand::golden::statistics;
@@ -109,4 +109,4 @@ TEST(DescriptiveTest, WhatCannotBeDescribedIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::descriptive_test

@@ -11,7 +11,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/statistics_golden.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::manova_test {
 namespace {
 
 namespace golden = stillhand::golden::statistics;
@@ -171,4 +171,4 @@ TEST(ManovaTest, SizesThatDisagreeAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::manova_test

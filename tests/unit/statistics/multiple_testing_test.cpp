@@ -9,7 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/statistics_golden.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::multiple_testing_test {
 namespace {
 
 namespace golden = stillhand::golden::statistics;
@@ -41,4 +41,4 @@ TEST(MultipleTestingTest, WhatIsNoProbabilityIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::multiple_testing_test

@@ -12,7 +12,7 @@
 #include "services/core/statistics/t_test.hpp"
 #include "tests/support/statistics_golden.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::power_test {
 namespace {
 
 namespace golden = stillhand::golden::statistics;
@@ -127,4 +127,4 @@ TEST(PowerTest, ArgumentsOutsideAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::power_test

@@ -11,7 +11,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/statistics/descriptive.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::ratio_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -86,4 +86,4 @@ TEST(RatioIntervalTest, RefusesUnequalLengths) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::ratio_test

@@ -10,7 +10,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/statistics_golden.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::signed_rank_test {
 namespace {
 
 namespace golden = stillhand::golden::statistics;
@@ -89,4 +89,4 @@ TEST(SignedRankTest, UnusableDifferencesAreRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::signed_rank_test

@@ -11,7 +11,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/statistics_golden.hpp"
 
-namespace stillhand::statistics {
+namespace stillhand::statistics::t_test_test {
 namespace {
 
 namespace golden = stillhand::golden::statistics;
@@ -140,4 +140,4 @@ TEST(WelchTestTest, RefusesSamplesThatCannotBeTested) {
 }
 
 }  // namespace
-}  // namespace stillhand::statistics
+}  // namespace stillhand::statistics::t_test_test

@@ -11,7 +11,7 @@
 #include "apps/lab/domain_lock.hpp"
 #include "apps/stop/socket_owners.hpp"
 
-namespace stillhand::stop {
+namespace stillhand::stop::running_sessions_test {
 namespace {
 
 // proc(5): number, references, protocol, flags, type, state, inode, path.
@@ -81,4 +81,4 @@ TEST(RunningSessionsTest, FindsTheLockOfALab) {
 }
 
 }  // namespace
-}  // namespace stillhand::stop
+}  // namespace stillhand::stop::running_sessions_test

@@ -14,7 +14,7 @@
 
 #include "tests/unit/study/made_record.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::analysis_test {
 namespace {
 
 using made::kNan;
@@ -370,4 +370,4 @@ TEST(AnalyseTest, SubjectsWhosePapersFitCouldNotCancelAreCounted) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::analysis_test

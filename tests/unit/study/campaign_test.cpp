@@ -10,7 +10,7 @@
 #include "apps/study/mitigations/choices.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::campaign_test {
 namespace {
 
 signal::DifferenceModel second_order_model() {
@@ -170,4 +170,4 @@ TEST(CampaignTest, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::campaign_test

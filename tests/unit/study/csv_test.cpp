@@ -13,7 +13,7 @@
 #include "apps/study/report/output.hpp"
 #include "tests/unit/study/made_record.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::csv_test {
 namespace {
 
 using made::kNan;
@@ -166,4 +166,4 @@ TEST(CsvFileTest, TrialsShorterThanTheWindowLeaveTheHeaderOfTheMovingAverages) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::csv_test

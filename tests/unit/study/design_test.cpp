@@ -11,7 +11,7 @@
 #include "services/core/admittance/arm_fit.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::design_test {
 namespace {
 
 // A gain alone, which is a model of order 1 with no dynamics.
@@ -106,4 +106,4 @@ TEST(PassiveTest, ADamperIsPassiveUpToItsFilter) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::design_test

@@ -13,7 +13,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/yaml_text.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::explain_test {
 namespace {
 
 // The paper's own figures, by hand: t_11 of p/2 = 2.0235e-6 is 8.4556, 14.355 mm sqrt(12) / 8.4556.
@@ -290,4 +290,4 @@ TEST(CausesTest, ShiftsMoveTheCalibratedMeansAndStayInRange) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::explain_test

@@ -13,7 +13,7 @@
 
 #include "tests/unit/study/made_record.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::figures_test {
 namespace {
 
 using made::kNan;
@@ -285,4 +285,4 @@ TEST(FigureWrongModelsTest, SubjectsStandWorstFirstAndThoseWithoutAGainAreLeftOu
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::figures_test

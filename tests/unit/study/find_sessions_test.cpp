@@ -15,7 +15,7 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::find_sessions_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,4 +116,4 @@ TEST_F(FindSessionsTest, WrongFoldersAreNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::find_sessions_test

@@ -9,7 +9,7 @@
 
 #include "services/messages/cancellation/codec.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::model_in_use_test {
 namespace {
 
 using testing::HasSubstr;
@@ -153,4 +153,4 @@ TEST_F(ModelInUseTest, ATrialWithAMitigationIsJudgedByTheTrialThatItsCommandsNam
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::model_in_use_test

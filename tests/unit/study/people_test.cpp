@@ -14,7 +14,7 @@
 #include "services/core/statistics/t_test.hpp"
 #include "tests/unit/study/made_record.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::people_test {
 namespace {
 
 using testing::ContainsRegex;
@@ -131,4 +131,4 @@ TEST(GainSentenceTest, TheIntervalHasTheSignOfTheDifference) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::people_test

@@ -10,7 +10,7 @@
 #include "services/core/statistics/power.hpp"
 #include "tests/unit/study/made_record.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::planned_test {
 namespace {
 
 TEST(PlannedTest, AnyPairOfConditionsIsComparedAndHolmsFactorsAreOverAllTests) {
@@ -65,4 +65,4 @@ TEST(PlannedTest, AnEffectNearNothingHasNoNumber) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::planned_test

@@ -13,7 +13,7 @@
 #include "apps/study/recorded/average.hpp"
 #include "tests/unit/study/made_record.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::selection_test {
 namespace {
 
 using testing::ElementsAre;
@@ -192,4 +192,4 @@ TEST(AveragedTest, TheOpenLoopOfTwoTrialsIsBetweenThem) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::selection_test

@@ -15,7 +15,7 @@
 #include "services/core/statistics/descriptive.hpp"
 #include "services/files/settings/yaml_text.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::spread_test {
 namespace {
 
 using statistics::mean;
@@ -243,4 +243,4 @@ TEST(SignaturesTest, AreThoseOfThePeople) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::spread_test

@@ -15,7 +15,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/verb.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::study_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ TEST_F(StudyCommandTest, AnEarlierStudyStaysWhenTheNextOneIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::study_command_test

@@ -13,7 +13,7 @@
 #include "apps/study/subjects/analysis.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::study_test {
 namespace {
 
 const OnProgress kNoProgress = [](std::int64_t, std::int64_t) { return true; };
@@ -177,4 +177,4 @@ TEST(StudyTest, StopsWhenToldSo) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::study_test

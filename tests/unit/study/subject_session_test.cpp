@@ -16,7 +16,7 @@
 #include "services/files/rig/sealed_file.hpp"
 #include "tests/support/refusal.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::subject_session_test {
 namespace {
 
 using testing::HasSubstr;
@@ -193,4 +193,4 @@ TEST(WrongModelsTest, ARealStudysTablesHaveAsManyCellsAsTheirHeaders) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::subject_session_test

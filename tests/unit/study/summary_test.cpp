@@ -12,7 +12,7 @@
 #include "apps/study/report/study_report.hpp"
 #include "tests/unit/study/made_record.hpp"
 
-namespace stillhand::study {
+namespace stillhand::study::summary_test {
 namespace {
 
 using made::kNan;
@@ -190,4 +190,4 @@ TEST(SummaryTest, TheGainAtZeroHertzIsTheQuotientOfTheSums) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::summary_test

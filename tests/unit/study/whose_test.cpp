@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace stillhand::study {
+namespace stillhand::study::whose_test {
 namespace {
 
 using close_the_loop::Finding;
@@ -63,4 +63,4 @@ TEST(WhoseTest, TheOthersForecastWhatIsTheRigsAndNotWhatIsAPersons) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::study::whose_test

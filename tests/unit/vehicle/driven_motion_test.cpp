@@ -10,7 +10,7 @@
 #include "services/core/signal/random.hpp"
 #include "services/core/vehicle/vehicle_settings.hpp"
 
-namespace stillhand::vehicle {
+namespace stillhand::vehicle::driven_motion_test {
 namespace {
 
 Trial driven_trial() {
@@ -158,4 +158,4 @@ TEST(DrivenMotionTest, ATrajectoryPassesBitForBit) {
 }
 
 }  // namespace
-}  // namespace stillhand::vehicle
+}  // namespace stillhand::vehicle::driven_motion_test

@@ -13,7 +13,7 @@
 #include "services/core/signal/second_order_lag.hpp"
 #include "services/core/vehicle/vehicle.hpp"
 
-namespace stillhand::vehicle {
+namespace stillhand::vehicle::loop_margin_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -135,4 +135,4 @@ TEST(LoopMarginTest, AResponseWithoutTwoRisingFrequenciesIsRefused) {
 }
 
 }  // namespace
-}  // namespace stillhand::vehicle
+}  // namespace stillhand::vehicle::loop_margin_test

@@ -9,7 +9,7 @@
 #include "apps/vehicle/region_output.hpp"
 #include "services/core/contract/config_error.hpp"
 
-namespace stillhand::vehicle {
+namespace stillhand::vehicle::region_test {
 namespace {
 
 RegionOptions small() {
@@ -138,4 +138,4 @@ TEST(AgreementTest, CountsWhatHasNoStepToCompareWith) {
 }
 
 }  // namespace
-}  // namespace stillhand::vehicle
+}  // namespace stillhand::vehicle::region_test

@@ -14,7 +14,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/signal/random.hpp"
 
-namespace stillhand::vehicle {
+namespace stillhand::vehicle::vehicle_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -146,4 +146,4 @@ TEST(VehicleTest, AnUnknownPresetAndAFieldOutOfRangeAreNamed) {
 }
 
 }  // namespace
-}  // namespace stillhand::vehicle
+}  // namespace stillhand::vehicle::vehicle_test

@@ -11,6 +11,7 @@
 #include "apps/libraries/measurement/tables/bag_topics.hpp"
 #include "idl/topics.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/core/contract/units.hpp"
 #include "services/core/recording/mcap/mcap_loss.hpp"
 #include "services/files/recording/file_io.hpp"
 
@@ -306,7 +307,6 @@ class BagTable : public TableFile {
     constexpr std::uint64_t kLatest_ns = std::uint64_t{1} << 62;
     auto time_ns = static_cast<std::int64_t>(std::min(message.log_time_ns, kLatest_ns));
     if (topic.stamp) {
-      constexpr std::int64_t kSecond_ns = 1'000'000'000;
       const std::int64_t stamp_ns =
           whole_of(cells[topic.stamp->first]) * kSecond_ns + whole_of(cells[topic.stamp->second]);
       if (stamp_ns != 0) time_ns = stamp_ns;  // 0: the sender has no clock

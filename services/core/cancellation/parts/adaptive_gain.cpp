@@ -13,7 +13,7 @@ constexpr double kDt = kControlPeriod_s;
 // Eq. CC-11: slow against the operator's own motion, fast against a hand that tightens.
 constexpr double kConvergence_s = 15.0;
 constexpr double kPower_s = 10.0;
-constexpr double kLeastMotion_m2 = 1e-4 * 1e-4;
+constexpr double kLeastPower_m2 = 1e-4 * 1e-4;
 constexpr double kFastest_s = 5.0;  // for a weight to change by 1
 // Eq. CC-12: a force that is to go to zero takes its phase along.
 constexpr double kMostGain = 1.5;
@@ -46,8 +46,8 @@ void AdaptiveGain::adapt(const Pair& r, double e) noexcept {
   power_[1] += kBlend * (r[0] * r[1] - power_[1]);
   power_[2] += kBlend * (r[1] * r[1] - power_[2]);
   // Regularised: without motion nothing is learnt.
-  const double a = power_[0] + kLeastMotion_m2;
-  const double d = power_[2] + kLeastMotion_m2;
+  const double a = power_[0] + kLeastPower_m2;
+  const double d = power_[2] + kLeastPower_m2;
   const double determinant = a * d - power_[1] * power_[1];
   const Pair towards{(d * r[0] - power_[1] * r[1]) * e / determinant,
                      (a * r[1] - power_[1] * r[0]) * e / determinant};
@@ -66,7 +66,7 @@ void AdaptiveGain::back_off(const Pair& r, double e) noexcept {
   const double without = e + weights_[0] * r[0] + weights_[1] * r[1];
   moved_ += kBlend * (e * e - moved_);
   unmoved_ += kBlend * (without * without - unmoved_);
-  if (moved_ > kWorse * unmoved_ + kLeastMotion_m2) {
+  if (moved_ > kWorse * unmoved_ + kLeastPower_m2) {
     for (double& weight : weights_) weight -= kDt / kBackOff_s * weight;
   }
 }

@@ -11,11 +11,11 @@
 namespace stillhand::cancellation {
 namespace {
 
-constexpr double kLow_hz = 0.5;
-constexpr double kHigh_hz = 6.0;
+constexpr double kLowOfReference_hz = 0.5;
+constexpr double kHighOfReference_hz = 6.0;
 // With a secondary path: as CC-10 and MI-5, where an average hand's compliance is everybody's.
 constexpr double kHighOfForce_hz = 3.0;
-constexpr int kEdgeOrder = 2;
+constexpr int kReferenceOrder = 2;
 // Below this the platform stands still, and there is nothing to learn from.
 constexpr double kStill_m_s2 = 0.05;
 
@@ -23,8 +23,8 @@ constexpr double kStill_m_s2 = 0.05;
 
 LmsFilter::LmsFilter(const LmsConfig& config)
     : step_(config.step),
-      reference_band_(kEdgeOrder, kLow_hz, config.path ? kHighOfForce_hz : kHigh_hz,
-                      kControlRateHz),
+      reference_band_(kReferenceOrder, kLowOfReference_hz,
+                      config.path ? kHighOfForce_hz : kHighOfReference_hz, kControlRateHz),
       error_band_(reference_band_) {
   if (!(step_ > 0.0 && step_ <= 1.0)) {
     throw ConfigError("lms.step", std::to_string(step_), "above 0, at most 1");

@@ -10,9 +10,9 @@
 namespace stillhand::cancellation {
 namespace {
 
-constexpr double kLow_hz = 0.5;
-constexpr double kHigh_hz = 3.0;
-constexpr int kEdgeOrder = 2;
+constexpr double kLowOfDifference_hz = 0.5;
+constexpr double kHighOfDifference_hz = 3.0;
+constexpr int kDifferenceOrder = 2;
 // Motion that holds the start's w against noise.
 constexpr double kStart_m = 2e-4;
 
@@ -23,7 +23,7 @@ ScheduledForce::ScheduledForce(const ScheduleConfig& config)
       holding_(config.holding, config.stick),
       lever_m_(config.lever_m),
       forget_(kControlPeriod_s / config.memory_s),
-      of_difference_(kEdgeOrder, kLow_hz, kHigh_hz, kControlRateHz),
+      of_difference_(kDifferenceOrder, kLowOfDifference_hz, kHighOfDifference_hz, kControlRateHz),
       of_motion_(of_difference_),
       power_(kStart_m * kStart_m),
       cross_(0.5 * kStart_m * kStart_m) {

@@ -14,10 +14,10 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t kLongestSegment = 1024;
 constexpr std::size_t kShortestSegment = 32;
-constexpr std::size_t kSegments = 20;  // at least, half as many again by the overlap
-constexpr std::size_t kFirstLine = 2;  // a Hann window spreads the mean over lines 0 and 1
-constexpr double kCollinear = 1e-9;    // of a channel's power left without the inputs: none
-constexpr double kLeastWeight = 0.9;   // of a segment's samples
+constexpr std::size_t kFewestSegments = 20;  // at least, half as many again by the overlap
+constexpr std::size_t kFirstLine = 2;        // a Hann window spreads the mean over lines 0 and 1
+constexpr double kCollinear = 1e-9;          // of a channel's power left without the inputs: none
+constexpr double kLeastWeight = 0.9;         // of a segment's samples
 
 // Where the segments begin.
 struct Segments {
@@ -27,7 +27,7 @@ struct Segments {
 
 Segments segments_of(const Signals& signals, const std::vector<double>& weight) {
   Segments segments{kLongestSegment, {}};
-  while (segments.length > kShortestSegment && segments.length * kSegments > signals.size()) {
+  while (segments.length > kShortestSegment && segments.length * kFewestSegments > signals.size()) {
     segments.length /= 2;
   }
   for (const Stretch& stretch : signals.stretches()) {

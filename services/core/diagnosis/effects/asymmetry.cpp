@@ -12,7 +12,7 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kLargest = 0.9;  // of a half-line's slope change
+constexpr double kLargestSlopeChange = 0.9;  // of a half-line's slope change
 constexpr const char* kSize = "size at the output";
 constexpr const char* kSquare = "square at the input";
 constexpr int kMostPoles = 4;  // of a body behind which only the size is measured
@@ -173,7 +173,7 @@ std::vector<Proposal> Asymmetry::proposed(const Screening& screening) const {
                         "slopes at the output",
                         {},
                         {{"slope_change", "-", std::clamp(at_output.coefficients[0], -0.5, 0.5),
-                          -kLargest, kLargest}},
+                          -kLargestSlopeChange, kLargestSlopeChange}},
                         {}},
                        at_output.share,
                        {}});
@@ -185,7 +185,7 @@ std::vector<Proposal> Asymmetry::proposed(const Screening& screening) const {
                         "slopes at the input",
                         {input.name},
                         {{"slope_change", "-", std::clamp(at_input.coefficients[0], -0.5, 0.5),
-                          -kLargest, kLargest}},
+                          -kLargestSlopeChange, kLargestSlopeChange}},
                         {}},
                        at_input.share,
                        {}});

@@ -8,7 +8,8 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kLargest = 10.0;  // [-] of the gain, per standard deviation of the channel
+constexpr double kLargestPerDeviation =
+    10.0;  // [-] of the gain, per standard deviation of the channel
 
 /// A product of two channels, or a gain that follows a channel:
 ///
@@ -80,7 +81,7 @@ std::vector<Proposal> Bilinear::proposed(const Screening& screening) const {
         column[n] *= signal.values[n] - signal.mean;
       }
       const ScreenedGain found = screening.gain({column});
-      const double bound = kLargest / signal.deviation;
+      const double bound = kLargestPerDeviation / signal.deviation;
       gains.push_back({{"bilinear",
                         "gain of the body",
                         {signal.name},

@@ -9,9 +9,9 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kLargest = 0.02;  // [-] crystals: 1e-4; recorders that drop samples: more
+constexpr double kLargestDrift = 0.02;  // [-] crystals: 1e-4; recorders that drop samples: more
 // [s] over the record, each way: what a linearisation doesn't reach.
-constexpr double kTried_s[] = {-0.24, -0.12, -0.06, -0.03, 0.0, 0.03, 0.06, 0.12, 0.24};
+constexpr double kTriedDrifts_s[] = {-0.24, -0.12, -0.06, -0.03, 0.0, 0.03, 0.06, 0.12, 0.24};
 
 /// Clocks of input and output that run apart:
 ///
@@ -45,9 +45,9 @@ std::vector<Proposal> ClockDrift::proposed(const Screening& screening) const {
   const double length_s = std::max(signals.duration_s(), 1e-9);
   std::vector<Proposal> proposals;
   const Body& body = screening.model().body;
-  for (const double over_record_s : kTried_s) {
+  for (const double over_record_s : kTriedDrifts_s) {
     const double start = over_record_s / length_s;
-    if (std::abs(start) > kLargest) continue;
+    if (std::abs(start) > kLargestDrift) continue;
     // The body's zeros are free to follow, its poles are taken as they are.
     const auto at = [&](double drift) {
       Columns columns;
@@ -74,11 +74,12 @@ std::vector<Proposal> ClockDrift::proposed(const Screening& screening) const {
     }
     columns.push_back(std::move(slope));
     const ScreenedGain found = screening.gain(columns);
-    const double drift = std::clamp(start + found.coefficients.back(), -kLargest, kLargest);
+    const double drift =
+        std::clamp(start + found.coefficients.back(), -kLargestDrift, kLargestDrift);
     Proposal proposal{{"clock_drift",
                        "of the output",
                        {},
-                       {{"drift", "us/s", 1e6 * drift, -1e6 * kLargest, 1e6 * kLargest},
+                       {{"drift", "us/s", 1e6 * drift, -1e6 * kLargestDrift, 1e6 * kLargestDrift},
                         constant("reference_time", "s", middle_s)},
                        {}},
                       found.share,

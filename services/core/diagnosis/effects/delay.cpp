@@ -13,7 +13,8 @@ namespace {
 constexpr double kEarliest_s = -0.1;  // the input's own sensor may be late, too
 constexpr double kLatest_s = 0.5;
 // Local minima of the error lie a few samples of 10 ms apart.
-constexpr double kTried_s[] = {-0.03, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3};
+constexpr double kTriedDelays_s[] = {-0.03, 0.02, 0.04, 0.06, 0.08, 0.1,
+                                     0.13,  0.16, 0.2,  0.25, 0.3};
 constexpr std::size_t kThorough = 4;
 constexpr double kFiner_s[] = {0.01, 0.005, 0.0025};
 constexpr double kMinimum_s = 0.015;
@@ -108,7 +109,7 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
       each = with_moved_poles(screening, each, each.effect.value(0));
     }
   } else {
-    for (const double delay_s : kTried_s) {
+    for (const double delay_s : kTriedDelays_s) {
       proposals.push_back(with_own_body(screening, delay_s));
     }
   }

@@ -13,8 +13,6 @@ namespace {
 // [standard deviations]
 const std::vector<double> kTriedLimits{0.3, 0.5, 0.7, 0.9, 1.1, 1.4, 1.7, 2.0, 2.5};
 
-bool soft(const Effect& effect) { return effect.form.starts_with("soft"); }
-
 double limited(double u, double limit, bool softly) {
   return softly ? limit * std::tanh(u / limit) : std::clamp(u, -limit, limit);
 }
@@ -29,7 +27,7 @@ class InputSaturation final : public EffectKind {
   [[nodiscard]] std::string_view name() const override { return "input_saturation"; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kInputValue; }
   [[nodiscard]] double mapped(const Effect& effect, double u) const override {
-    return limited(u, effect.value(0), soft(effect));
+    return limited(u, effect.value(0), is_soft(effect));
   }
   [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
     const double rate_hz = at.model.rate_hz;

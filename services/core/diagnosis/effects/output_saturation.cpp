@@ -9,7 +9,6 @@
 namespace stillhand::diagnosis {
 namespace {
 
-bool soft(const Effect& effect) { return effect.form.starts_with("soft"); }
 bool two_limits(const Effect& effect) { return effect.form == "hard, two limits"; }
 
 // Of an output that rests at an end of its range.
@@ -51,11 +50,11 @@ class OutputSaturation final : public EffectKind {
     return {is_above(effect) ? beyond : short_of, 1.0, effect.value(0)};
   }
   [[nodiscard]] double mapped(const Effect& effect, double y) const override {
-    if (!soft(effect)) return std::clamp(y, lower(effect), upper(effect));
+    if (!is_soft(effect)) return std::clamp(y, lower(effect), upper(effect));
     return upper(effect) * std::tanh(y / upper(effect));
   }
   [[nodiscard]] double slope(const Effect& effect, double y) const override {
-    if (!soft(effect)) return y > lower(effect) && y < upper(effect) ? 1.0 : 0.0;
+    if (!is_soft(effect)) return y > lower(effect) && y < upper(effect) ? 1.0 : 0.0;
     const double t = std::tanh(y / upper(effect));
     return 1.0 - t * t;
   }
@@ -280,11 +279,11 @@ std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) con
   const bool first = screening.model().effects.empty();
   std::vector<Proposal> softened;
   for (const Proposal& each : screening.known(name())) {
-    if (soft(each.effect)) softened.push_back(fitted_from(each.effect, *each.body, screening));
+    if (is_soft(each.effect)) softened.push_back(fitted_from(each.effect, *each.body, screening));
   }
   const bool known = !softened.empty();
   for (const Effect& start : starts) {
-    if (known || !soft(start)) continue;
+    if (known || !is_soft(start)) continue;
     // As if the linear body had been fitted to the output before the limit.
     softened.push_back(fitted_from(start, first ? body_before(start, screening) : own, screening));
   }
@@ -293,7 +292,7 @@ std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) con
   // too.  Next to other effects both come from the model's own.
   std::vector<Proposal> hard;
   for (const Effect& start : starts) {
-    if (soft(start)) continue;
+    if (is_soft(start)) continue;
     hard.push_back(fitted_from(start, own, screening));
     if (first && !softened.empty()) {
       hard.push_back(fitted_from(start, *softened.front().body, screening));

@@ -25,6 +25,9 @@ double deviation_of(const std::vector<double>& values);
 /// The value below which a share of the values lies.
 double quantile_of(std::vector<double> values, double share);
 
+/// Of a limit: tanh in place of a corner.
+inline bool is_soft(const Effect& effect) { return effect.form.starts_with("soft"); }
+
 /// Number and unit, for evidence: "3.2 N".
 std::string with_unit(double value, const std::string& unit);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr int kCoarse = 40;     // moments tried over the record
 constexpr int kFine = 20;       // and around the best of them
 constexpr double kEdge = 0.05;  // of the record, at both ends: too short to determine a gain
-constexpr double kLargest = 5.0;
+constexpr double kLargestStep = 5.0;
 
 /// A gain of the body's output that changes at one moment t_0:
 ///
@@ -50,15 +50,15 @@ std::vector<Proposal> RegimeChange::proposed(const Screening& screening) const {
       if (signals.time_s()[n] - signals.time_s().front() < at_s) column[n] = -column[n];
     }
     const ScreenedGain found = screening.gain({column});
-    return Proposal{
-        {"regime_change",
-         "step of the gain",
-         {},
-         {{"time", "s", at_s, 0.0, length_s, false},
-          {"change", "-", std::clamp(found.coefficients[0], -0.9, 0.9), -kLargest, kLargest}},
-         {}},
-        found.share,
-        {}};
+    return Proposal{{"regime_change",
+                     "step of the gain",
+                     {},
+                     {{"time", "s", at_s, 0.0, length_s, false},
+                      {"change", "-", std::clamp(found.coefficients[0], -0.9, 0.9), -kLargestStep,
+                       kLargestStep}},
+                     {}},
+                    found.share,
+                    {}};
   };
   std::vector<Proposal> proposals;
   const double step_s = (1.0 - 2.0 * kEdge) * length_s / kCoarse;

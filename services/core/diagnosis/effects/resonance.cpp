@@ -14,7 +14,7 @@ namespace {
 constexpr double kTriedDamping[] = {0.012, 0.035, 0.1, 0.3};
 constexpr double kStep = 2.0;  // between tried frequencies, in damping ratios: half power and half
 constexpr double kLowest_hz = 0.3;
-constexpr double kHighestOfRate = 0.4;
+constexpr double kHighestModeOfRate = 0.4;
 constexpr double kLeastDamping = 0.003;
 constexpr double kLargestDamping = 0.95;
 constexpr double kLongestRinging = 0.125;  // [record lengths]
@@ -71,7 +71,7 @@ Effect mode_beside(const Screening& screening, double frequency_hz, double dampi
           "beside the body",
           {},
           {{"frequency", "Hz", frequency_hz, 0.5 * kLowest_hz,
-            kHighestOfRate * screening.signals().rate_hz()},
+            kHighestModeOfRate * screening.signals().rate_hz()},
            {"damping_ratio", "-", damping_ratio, kLeastDamping, kLargestDamping}},
           {}};
 }
@@ -151,7 +151,7 @@ std::vector<Proposal> from_larger_bodies(const Screening& screening) {
 
 std::vector<Proposal> Resonance::proposed(const Screening& screening) const {
   if (screening.model().body.order() == 0) return {};
-  const double highest_hz = kHighestOfRate * screening.signals().rate_hz();
+  const double highest_hz = kHighestModeOfRate * screening.signals().rate_hz();
   std::vector<Proposal> proposals;
   for (const double damping : kTriedDamping) {
     const double ratio = 1.0 + kStep * damping;

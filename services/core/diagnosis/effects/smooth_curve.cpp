@@ -34,13 +34,13 @@ class LaidOut {
   std::vector<SmoothCurve::Piece> pieces_;
 };
 
-using Point = std::pair<double, double>;  // argument, phi
+using CurvePoint = std::pair<double, double>;  // argument, phi
 
 // Halfway between even steps of the range and of the samples: a bend may lie where samples are few.
-std::vector<Point> points_at_knots(const std::vector<double>& argument,
-                                   const std::vector<double>& phi,
-                                   const std::vector<double>& weight) {
-  std::vector<Point> counted;
+std::vector<CurvePoint> points_at_knots(const std::vector<double>& argument,
+                                        const std::vector<double>& phi,
+                                        const std::vector<double>& weight) {
+  std::vector<CurvePoint> counted;
   for (std::size_t n = 0; n < argument.size(); ++n) {
     if (weight[n] > 0.0) counted.emplace_back(argument[n], phi[n]);
   }
@@ -48,14 +48,14 @@ std::vector<Point> points_at_knots(const std::vector<double>& argument,
   std::ranges::sort(counted);
   const double low = counted.front().first;
   const double range = counted.back().first - low;
-  std::vector<Point> points;
+  std::vector<CurvePoint> points;
   for (std::size_t k = 0; k < kMostKnotsInside; ++k) {
     const double share = static_cast<double>(k) / (kMostKnotsInside - 1);
     const auto at = static_cast<std::size_t>(share * static_cast<double>(counted.size() - 1));
     // Rounding may put the last one beyond all of them.
     const double sought =
         std::min(0.5 * (counted[at].first + low + share * range), counted.back().first);
-    const Point point = *std::ranges::lower_bound(counted, sought, {}, &Point::first);
+    const CurvePoint point = *std::ranges::lower_bound(counted, sought, {}, &CurvePoint::first);
     if (points.empty() || point.first - points.back().first > kKnotsApart * range) {
       points.push_back(point);
     }
@@ -129,10 +129,10 @@ std::optional<Effect> curve_through(const std::vector<double>& argument,
   constexpr double kWidest = 5.0;     // of the heights' range
   constexpr double kNoCurve = 0.2;    // of phi's deviation
   constexpr double kStraight = 1e-6;  // of the heights' range: rounding
-  const std::vector<Point> points = points_at_knots(argument, phi, weight);
+  const std::vector<CurvePoint> points = points_at_knots(argument, phi, weight);
   if (points.size() < kFewestKnots) return {};
   std::vector<double> knots;
-  for (const Point& point : points) knots.push_back(point.first);
+  for (const CurvePoint& point : points) knots.push_back(point.first);
   Effect effect = with_knots(kCurveInside, {}, "-", knots);
   for (std::size_t k = 0; k < points.size(); ++k) {
     effect.parameters.push_back(constant("height_" + std::to_string(k + 1), "-", points[k].second));
@@ -144,7 +144,7 @@ std::optional<Effect> curve_through(const std::vector<double>& argument,
   std::vector<double> bends = curve.bends();
   for (double& bend : bends) bend = std::abs(bend);
   const auto furthest = std::ranges::max_element(bends);
-  const auto [low, high] = std::ranges::minmax(points, {}, &Point::second);
+  const auto [low, high] = std::ranges::minmax(points, {}, &CurvePoint::second);
   const double range = high.second - low.second;
   const bool straight = *furthest < kStraight * range;
   for (std::size_t k = 1; k + 1 < knots.size(); ++k) {

@@ -10,7 +10,7 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kLargest = 3.0;
+constexpr double kLargestGainChange = 3.0;
 constexpr std::size_t kCosines = 4;
 constexpr double kPeriods[] = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0};  // [cycles a record]
 
@@ -96,7 +96,7 @@ class TimeVaryingGain final : public EffectKind {
 std::vector<Proposal> TimeVaryingGain::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
   const auto weight = [](const std::string& name) {
-    return Parameter{name, "-", 0.0, -kLargest, kLargest};
+    return Parameter{name, "-", 0.0, -kLargestGainChange, kLargestGainChange};
   };
   std::vector<Effect> forms{{"time_varying_gain", "linear", {}, {weight("change")}, {}},
                             {"time_varying_gain", "slow cosines", {}, {}, {}}};
@@ -127,7 +127,8 @@ std::vector<Proposal> TimeVaryingGain::proposed(const Screening& screening) cons
     std::size_t next = 0;
     for (std::size_t i = 0; i < form.parameters.size(); ++i) {
       if (!is_weight(form, i)) continue;
-      form.parameters[i].value = std::clamp(found.coefficients[next++], -kLargest, kLargest);
+      form.parameters[i].value =
+          std::clamp(found.coefficients[next++], -kLargestGainChange, kLargestGainChange);
     }
     proposals.push_back({std::move(form), found.share, {}});
   }

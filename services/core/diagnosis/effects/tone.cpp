@@ -10,7 +10,7 @@ namespace stillhand::diagnosis {
 namespace {
 
 constexpr double kFewestPeriods = 5.0;  // less is drift
-constexpr double kHighestOfRate = 0.48;
+constexpr double kHighestToneOfRate = 0.48;
 constexpr std::size_t kLines = 3;
 // Of a line's power over its surroundings' median: noise of any smooth spectrum exceeds it in one
 // record of thousands, exp(-25 ln 2) a line.
@@ -54,9 +54,9 @@ class Tone final : public EffectKind {
     const Eigen::VectorXd& r = screening.residual();
     const double line_hz = 1.0 / signals.duration_s();
     std::vector<Proposal> proposals;
-    for (const Line& line :
-         strongest_lines(signals.time_s(), {r.data(), r.data() + r.size()},
-                         kFewestPeriods * line_hz, kHighestOfRate * signals.rate_hz(), kLines)) {
+    for (const Line& line : strongest_lines(signals.time_s(), {r.data(), r.data() + r.size()},
+                                            kFewestPeriods * line_hz,
+                                            kHighestToneOfRate * signals.rate_hz(), kLines)) {
       if (line.prominence < kLeastProminence) continue;
       auto [effect, gain] = screening.with_coefficients(
           {"tone",

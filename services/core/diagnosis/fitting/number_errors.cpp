@@ -17,8 +17,8 @@ namespace {
 constexpr double kUndetermined = 1e-10;
 // Of a gradient's squared length: what differences leave in a direction that changes nothing.
 constexpr double kNoPart = 1e-6;
-constexpr double kStep = 1e-3;       // [standard errors] of one number if all others are known
-constexpr double kLeastStep = 1e-7;  // of the number, so that rounding stays small
+constexpr double kStepErrors = 1e-3;  // [standard errors] of one number if all others are known
+constexpr double kLeastStep = 1e-7;   // of the number, so that rounding stays small
 
 // Eq. DG-70: C^-T x of the noise model e = C r, each stretch by itself: backwards in time.
 void spread_by_noise(const std::vector<double>& taps, const Signals& signals,
@@ -75,7 +75,7 @@ NumberErrors::NumberErrors(const Model& model, const Linearisation& line, const 
   if (!taps.empty()) spread_by_noise(taps, signals, spread);
   const double variance = line.residual.squaredNorm() / left;
   covariance_ = variance * (to_numbers * (spread.transpose() * spread) * to_numbers.transpose());
-  step_ = step_.cwiseMax(kStep * std::sqrt(variance) * scale_);
+  step_ = step_.cwiseMax(kStepErrors * std::sqrt(variance) * scale_);
 }
 
 double NumberErrors::along(const Eigen::VectorXd& gradient) const {

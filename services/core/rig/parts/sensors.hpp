@@ -5,12 +5,12 @@
 
 #include "services/core/contract/config_field.hpp"
 #include "services/core/contract/flag.hpp"
+#include "services/core/contract/units.hpp"
 #include "services/core/rig/parts/sensor_noise.hpp"
 
 namespace stillhand::rig {
 
 /// Standard gravity [m/s^2], ISO 80000-3.
-inline constexpr double kGravity_m_s2 = 9.80665;
 
 /// Sensors and the acquisition board.
 struct SensorConfig {
