@@ -3,7 +3,7 @@
 # As fastddsgen 2: types are final, and discovery does not describe them.
 set(fast_dds_words -default_extensibility final -no-typeobjectsupport)
 set(fast_dds_bus_definitions)
-# The tinyxml2 that Fast DDS 3 brings wants this; precompiled headers need one setting for all.
+# The tinyxml2 that Fast DDS 3 brings wants this.
 target_compile_definitions(stillhand_options INTERFACE _FILE_OFFSET_BITS=64)
 macro(fast_dds_outputs subject)
   set(outputs ${generated}/${subject}.hpp ${generated}/${subject}CdrAux.ipp)
