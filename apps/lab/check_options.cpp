@@ -59,7 +59,7 @@ void refuse_with(const char* option, const std::vector<std::pair<const char*, bo
 
 void check_combinations(const LabOptions& options) {
   if (!options.protocol.planned &&
-      (options.protocol.motion == session::Motion::kRide) == options.ride.empty()) {
+      (options.protocol.motion == motion::MotionKind::kRide) == options.ride.empty()) {
     throw ConfigError("--ride", options.ride.empty() ? "nothing" : options.ride.string(),
                       "a file with --motion ride, and no file without it");
   }
@@ -67,7 +67,7 @@ void check_combinations(const LabOptions& options) {
     throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
   }
   if (!options.devices.empty()) check_devices(options);
-  const bool other_motion = options.protocol.motion != session::Motion::kBandNoise;
+  const bool other_motion = options.protocol.motion != motion::MotionKind::kBandNoise;
   if (options.protocol.perturb_period_s != 0.0) {
     refuse_with("--identify",
                 {{"--attach", options.attach},

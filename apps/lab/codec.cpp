@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/codec.hpp"
 
+#include <cstddef>
+
 namespace stillhand::lab {
 namespace {
 
@@ -21,62 +23,22 @@ EventKind kind_of(stillhand_msgs::EventKind kind) {
   }
 }
 
+// Actions and prompts of session and bus have one order.
 Action action_of(stillhand_msgs::SessionAction action) {
-  switch (action) {
-    case stillhand_msgs::SESSION_START:
-      return Action::kStart;
-    case stillhand_msgs::SESSION_PAUSE:
-      return Action::kPause;
-    case stillhand_msgs::SESSION_STOP:
-      return Action::kStop;
-    case stillhand_msgs::SESSION_EMERGENCY_STOP:
-      return Action::kEmergencyStop;
-    case stillhand_msgs::SESSION_NOTE:
-      return Action::kNote;
-    case stillhand_msgs::SESSION_REPEAT:
-      return Action::kRepeat;
-    case stillhand_msgs::SESSION_ABORT:
-      return Action::kAbort;
-  }
-  return Action::kUnknown;  // from another version
+  // From another version, or below zero.
+  const auto number = static_cast<std::uint32_t>(action);
+  return number <= static_cast<std::uint32_t>(stillhand_msgs::SESSION_ABORT)
+             ? static_cast<Action>(number)
+             : Action::kUnknown;
 }
-
-stillhand_msgs::PromptKind kind_of(PromptKind kind) {
-  switch (kind) {
-    case PromptKind::kNothing:
-      break;
-    case PromptKind::kInstructions:
-      return stillhand_msgs::PROMPT_INSTRUCTIONS;
-    case PromptKind::kIdentification:
-      return stillhand_msgs::PROMPT_IDENTIFICATION;
-    case PromptKind::kPractice:
-      return stillhand_msgs::PROMPT_PRACTICE;
-    case PromptKind::kTrial:
-      return stillhand_msgs::PROMPT_TRIAL;
-    case PromptKind::kBreak:
-      return stillhand_msgs::PROMPT_BREAK;
-    case PromptKind::kQuestion:
-      return stillhand_msgs::PROMPT_QUESTION;
-    case PromptKind::kEnd:
-      return stillhand_msgs::PROMPT_END;
-  }
-  return stillhand_msgs::PROMPT_NOTHING;
-}
-
-stillhand_msgs::MotionKind motion_of(const session::PlannedTrial& planned) {
-  if (!planned.moving) return stillhand_msgs::MOTION_STILL;
-  switch (planned.motion) {
-    case session::Motion::kBandNoise:
-      return stillhand_msgs::MOTION_BAND_NOISE;
-    case session::Motion::kRoad:
-      return stillhand_msgs::MOTION_ROAD;
-    case session::Motion::kRide:
-      return stillhand_msgs::MOTION_RIDE;
-    case session::Motion::kInterleaved:
-      return stillhand_msgs::MOTION_MULTISINE;
-  }
-  return stillhand_msgs::MOTION_STILL;
-}
+static_assert(static_cast<std::size_t>(stillhand_msgs::SESSION_START) ==
+              static_cast<std::size_t>(Action::kStart));
+static_assert(static_cast<std::size_t>(stillhand_msgs::SESSION_ABORT) ==
+              static_cast<std::size_t>(Action::kAbort));
+static_assert(static_cast<std::size_t>(stillhand_msgs::PROMPT_NOTHING) ==
+              static_cast<std::size_t>(PromptKind::kNothing));
+static_assert(static_cast<std::size_t>(stillhand_msgs::PROMPT_END) ==
+              static_cast<std::size_t>(PromptKind::kEnd));
 
 }  // namespace
 
@@ -123,7 +85,7 @@ AnswerSeen from_idl(const stillhand_msgs::Answer& answer) {
 stillhand_msgs::Prompt to_idl(const Prompt& prompt, std::uint64_t number, Tick now) {
   stillhand_msgs::Prompt message;
   message.number(number);
-  message.kind(kind_of(prompt.kind));
+  message.kind(static_cast<stillhand_msgs::PromptKind>(prompt.kind));
   message.participant(prompt.participant);
   message.block(static_cast<std::int32_t>(prompt.block));
   message.blocks(static_cast<std::int32_t>(prompt.blocks));
@@ -172,7 +134,9 @@ stillhand_msgs::TrialControl to_idl(const Announcement& announcement,
 stillhand_msgs::TrialAssignment assignment_of(const session::PlannedTrial& planned) {
   stillhand_msgs::TrialAssignment message;
   message.trial(static_cast<std::int32_t>(planned.trial.number));
-  message.motion(motion_of(planned));
+  // A motion is one number on the bus and in the core.
+  message.motion(planned.moving ? static_cast<stillhand_msgs::MotionKind>(planned.motion)
+                                : stillhand_msgs::MOTION_STILL);
   message.band_low_hz(planned.band_low_hz);
   message.band_high_hz(planned.band_high_hz);
   message.band_order(planned.band_order);

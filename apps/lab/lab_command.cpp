@@ -63,7 +63,7 @@ void take_perturbation(const LabArguments& arguments, LabOptions& options) {
 
 // An option of the road has no effect without --motion road: it is refused.
 void take_road(const LabArguments& arguments, session::ProtocolOptions& protocol) {
-  if (protocol.motion != session::Motion::kRoad &&
+  if (protocol.motion != motion::MotionKind::kRoad &&
       (arguments.road_class || arguments.road_speed_m_s)) {
     throw ConfigError(arguments.road_class ? "--road-class" : "--speed-m-s",
                       "it with --motion " + arguments.motion, "it with --motion road alone");
@@ -250,9 +250,9 @@ void take_arguments(const LabArguments& arguments, LabOptions& options) {
     throw ConfigError("--gamepad", options.gamepad.empty() ? "nothing" : options.gamepad.string(),
                       "a device with --operator gamepad, and none without it");
   }
-  options.protocol.motion = arguments.motion == "road"   ? session::Motion::kRoad
-                            : arguments.motion == "ride" ? session::Motion::kRide
-                                                         : session::Motion::kBandNoise;
+  options.protocol.motion = arguments.motion == "road"   ? motion::MotionKind::kRoad
+                            : arguments.motion == "ride" ? motion::MotionKind::kRide
+                                                         : motion::MotionKind::kBandNoise;
   take_road(arguments, options.protocol);
   take_perturbation(arguments, options);
   take_rig(arguments.rig, options);

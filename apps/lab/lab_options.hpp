@@ -24,7 +24,7 @@ struct LabOptions {
   /// Trials that may run, for the rehearsal; empty: those of session::plan(protocol).
   std::vector<session::PlannedTrial> trials;
   std::filesystem::path out;       ///< folder of the results
-  std::filesystem::path ride;      ///< recorded ride, for Motion::kRide or a plan
+  std::filesystem::path ride;      ///< recorded ride, for MotionKind::kRide or a plan
   std::filesystem::path programs;  ///< folder of the stillhand-* executables
   std::filesystem::path profiles;  ///< qos/profiles.xml
   std::filesystem::path config;    ///< folder of the services' settings

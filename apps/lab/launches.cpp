@@ -52,14 +52,15 @@ Arguments motion_words(const LabOptions& options) {
   if (protocol.perturb_period_s != 0.0) return perturb_words(protocol);
   if (protocol.planned) return {"--ride", options.ride.string()};
   switch (protocol.motion) {
-    case session::Motion::kRide:
+    case motion::MotionKind::kRide:
       return {"--ride", options.ride.string()};
-    case session::Motion::kRoad:
+    case motion::MotionKind::kRoad:
       // Every bit of the double.
       return {"--road-class", protocol.road_class, "--speed-m-s",
               fmt::format("{:.17g}", protocol.road_speed_m_s)};
-    case session::Motion::kBandNoise:
-    case session::Motion::kInterleaved:
+    case motion::MotionKind::kStill:
+    case motion::MotionKind::kBandNoise:
+    case motion::MotionKind::kMultisine:
       break;
   }
   return {};

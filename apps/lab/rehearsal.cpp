@@ -22,7 +22,7 @@ motion::MotionProfile profile_of(const session::PlannedTrial& planned,
   profile.road_speed_m_s = options.road_speed_m_s;
   profile.ride_rate_hz = ride.rate_hz;
   profile.ride_accel_m_s2 = ride.accel_m_s2;
-  if (planned.motion == session::Motion::kInterleaved) {
+  if (planned.motion == motion::MotionKind::kMultisine) {
     profile.components = admittance::motion_components(
         {options.perturb_period_s, options.seed, options.perturb_swapped}, profile.duration_ticks);
   }
@@ -33,21 +33,22 @@ motion::MotionProfile profile_of(const session::PlannedTrial& planned,
 ConfigError refusal(const session::PlannedTrial& planned, const session::ProtocolOptions& options,
                     const motion::RideRecord& ride, const std::string& why) {
   switch (planned.motion) {
-    case session::Motion::kBandNoise:
+    case motion::MotionKind::kBandNoise:
       return {"motion.yaml",
               fmt::format("the noise of trial {} ({})", planned.trial.number,
                           session::name_of(planned.label)),
               fmt::format("limits that allow it ({})", why)};
-    case session::Motion::kRoad:
+    case motion::MotionKind::kRoad:
       return {
           "--road-class",
           fmt::format("{} at {:.6g} m/s", options.road_class, options.road_speed_m_s),
           fmt::format("a better road or less speed, so that the platform can follow ({})", why)};
-    case session::Motion::kInterleaved:
+    case motion::MotionKind::kMultisine:
       return {"--trial-seconds and --perturb-period-s",
               fmt::format("{:.6g} and {:.6g}", options.trial_s, options.perturb_period_s),
               fmt::format("a motion that the platform can follow ({})", why)};
-    case session::Motion::kRide:
+    case motion::MotionKind::kStill:
+    case motion::MotionKind::kRide:
       break;
   }
   return {ride.source, "a ride that the platform cannot follow",
@@ -72,14 +73,14 @@ AskedMotions rehearse(const std::vector<session::PlannedTrial>& trials,
     }
     if (!planned.moving) continue;
     // A ride has no seed, so every trial has the same motion; an hour of it takes seconds to make.
-    if (planned.motion == session::Motion::kRide && followed_ride) {
+    if (planned.motion == motion::MotionKind::kRide && followed_ride) {
       asked[trial.number] = *followed_ride;
       continue;
     }
     try {
       const motion::MotionTrajectory motion(profile_of(planned, options, ride), platform.limits);
       asked[trial.number] = motion.report();
-      if (planned.motion == session::Motion::kRide) followed_ride = motion.report();
+      if (planned.motion == motion::MotionKind::kRide) followed_ride = motion.report();
     } catch (const ConfigError& error) {
       throw refusal(planned, options, ride, error.what());
     }

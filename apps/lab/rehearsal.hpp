@@ -20,7 +20,7 @@ using AskedMotions = std::map<std::int64_t, motion::MotionReport>;
 /// cannot show, is refused before a subject sits there.
 /// @param trials   that may run
 /// @param options  road class and speed
-/// @param ride    for Motion::kRide, otherwise empty
+/// @param ride    for MotionKind::kRide, otherwise empty
 /// @param config  folder of motion.yaml and display.yaml
 /// @throws ConfigError naming the option or setting, and what the platform would need
 AskedMotions rehearse(const std::vector<session::PlannedTrial>& trials,

@@ -96,12 +96,12 @@ void print_models(const session::SessionResult& result,
 void print_motion(const std::vector<session::TrialOutcome>& outcomes,
                   const session::ProtocolOptions& protocol) {
   for (const session::TrialOutcome& outcome : outcomes) {
-    if (!outcome.asked || outcome.planned.motion == session::Motion::kBandNoise ||
-        outcome.planned.motion == session::Motion::kInterleaved) {
+    if (!outcome.asked || outcome.planned.motion == motion::MotionKind::kBandNoise ||
+        outcome.planned.motion == motion::MotionKind::kMultisine) {
       continue;
     }
     const motion::MotionReport& asked = *outcome.asked;
-    if (outcome.planned.motion == session::Motion::kRide) {
+    if (outcome.planned.motion == motion::MotionKind::kRide) {
       std::printf(
           "ride: high-pass at %.3f Hz, %.1f %% of its variance removed (%.1f %% by the high-pass)",
           asked.corner_hz, 100.0 * asked.removed_share, 100.0 * asked.removed_slow_share);

@@ -134,14 +134,14 @@ ordered_json motion_json(const session::TrialOutcome& outcome, const LabOptions&
                     {"rms_m_s2", asked.rms_m_s2},
                     {"peak_m_s2", asked.peak_m_s2},
                     {"peak_position_m", asked.peak_position_m}};
-  if (outcome.planned.motion == session::Motion::kRoad) {
+  if (outcome.planned.motion == motion::MotionKind::kRoad) {
     json["kind"] = "road";
     json["road_class"] = protocol.road_class;
     json["speed_m_s"] = protocol.road_speed_m_s;
-  } else if (outcome.planned.motion == session::Motion::kInterleaved) {
+  } else if (outcome.planned.motion == motion::MotionKind::kMultisine) {
     json["kind"] = "interleaved multisines";
     json["period_s"] = protocol.perturb_period_s;
-  } else if (outcome.planned.motion == session::Motion::kRide) {
+  } else if (outcome.planned.motion == motion::MotionKind::kRide) {
     json["kind"] = "ride";
     json["corner_hz"] = asked.corner_hz;
     json["removed_share"] = asked.removed_share;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "apps/libraries/report/staged_folder.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/units.hpp"
 
 namespace stillhand::recordings {
@@ -17,17 +18,6 @@ using recording::Cell;
 using recording::CellKind;
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
-
-// RFC 4180: quotes around a text with a comma, a quote or an end of line.
-void put_text(std::string& out, std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    out += text;
-    return;
-  }
-  out += '"';
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  out += '"';
-}
 
 template <typename Number>
 void put_number(std::string& out, Number number) {
@@ -49,7 +39,7 @@ void put_cell(std::string& out, const Cell& cell) {
   std::visit(
       [&]<typename Value>(const Value& value) {
         if constexpr (std::is_same_v<Value, std::string_view>) {
-          put_text(out, value);
+          out += report::csv_quoted(value);
         } else if constexpr (!std::is_same_v<Value, std::monostate>) {
           put_number(out, value);
         }
@@ -70,7 +60,7 @@ class CsvSink : public TableSink {
     if (of_messages_) text_ = "t [s],log_time [ns],publish_time [ns],sequence [-]";
     for (const auto& column : table.columns) {
       if (!text_.empty()) text_ += ',';
-      put_text(text_, column.name + " [" + unit_of(column) + "]");
+      text_ += report::csv_quoted(column.name + " [" + unit_of(column) + "]");
     }
     text_ += '\n';
   }

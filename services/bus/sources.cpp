@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/bus/sources.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstring>
 #include <iterator>
@@ -38,13 +41,7 @@ std::string printable(const std::string& name) {
 }  // namespace
 
 std::string text_of(const ParticipantId& participant) {
-  constexpr const char* kDigits = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : participant) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 0xf];
-  }
-  return text;
+  return fmt::format("{:02x}", fmt::join(participant, ""));
 }
 
 ParticipantId participant_of(const std::string& text, const std::string& name) {

@@ -199,6 +199,9 @@ TEST(MotionCodecTest, EveryKindOfMotionKeepsItsName) {
     message.motion(kind);
     EXPECT_EQ(motion::to_string(motion::from_idl(message, {}).kind), name);
   }
+  stillhand_msgs::TrialAssignment newer;
+  newer.motion(static_cast<stillhand_msgs::MotionKind>(stillhand_msgs::MOTION_RIDE + 1));
+  EXPECT_EQ(motion::from_idl(newer, {}).kind, motion::MotionKind::kStill);
 }
 
 TEST(CancellationCodecTest, EveryFieldOfASensedSampleReachesTheCore) {
@@ -287,6 +290,8 @@ TEST(DisplayCodecTest, EveryFieldOfAPromptReachesTheScreen) {
     message.steps(bad);
     EXPECT_EQ(display::from_idl(message).steps, 0) << bad;
   }
+  message.kind(static_cast<stillhand_msgs::PromptKind>(stillhand_msgs::PROMPT_END + 1));
+  EXPECT_EQ(display::from_idl(message).kind, display::PromptKind::kNothing);
 }
 
 TEST(DisplayCodecTest, EveryFieldOfAnAnswerIsSet) {

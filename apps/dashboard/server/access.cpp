@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/dashboard/server/access.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
 #include <sys/stat.h>
@@ -65,13 +67,7 @@ std::string random_word() {
   if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
     throw std::runtime_error("OpenSSL gives no random numbers");
   }
-  constexpr const char* kDigits = "0123456789abcdef";
-  std::string word;
-  for (const unsigned char byte : bytes) {
-    word += kDigits[byte >> 4];
-    word += kDigits[byte & 0xf];
-  }
-  return word;
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 }  // namespace

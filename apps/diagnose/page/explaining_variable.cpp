@@ -8,6 +8,7 @@
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/text/text.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -21,17 +22,6 @@ constexpr std::size_t kVariableBins = 40;
 constexpr double kWorthMore = 0.05;        // a later candidate must explain this much more
 constexpr double kDirectionMatters = 0.1;  // and the direction this much
 constexpr double kLags_s[] = {0.0, 0.01, 0.02, 0.04, 0.06, 0.09, 0.13, 0.2, 0.3, 0.5};
-
-std::vector<double> lagged(const std::vector<double>& x, std::size_t lag,
-                           const std::vector<diagnosis::Stretch>& stretches) {
-  std::vector<double> y(x.size());
-  for (const diagnosis::Stretch& stretch : stretches) {
-    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
-      y[n] = x[n - stretch.first >= lag ? n - lag : stretch.first];
-    }
-  }
-  return y;
-}
 
 std::vector<double> folded(const std::vector<double>& x, double period) {
   std::vector<double> y(x.size());
@@ -55,8 +45,8 @@ void add_lagged(const Signal& signal, const diagnosis::Signals& signals, Groups&
       const double ms = 1000.0 * static_cast<double>(lag) / signals.rate_hz();
       name += " " + report::short_number(ms) + " ms earlier";
     }
-    lags.push_back(
-        {axis_label(name, signal.unit), lagged(signal.values, lag, signals.stretches())});
+    lags.push_back({axis_label(name, signal.unit),
+                    diagnosis::lagged(signal.values, lag, signals.stretches())});
   }
   all.push_back(std::move(lags));
 }

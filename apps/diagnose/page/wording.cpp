@@ -13,14 +13,8 @@ namespace {
 
 using diagnosis::Diagnosis;
 using diagnosis::FoundEffect;
+using report::replace_all;
 using report::short_number;
-
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos;
-       at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-}
 
 std::string model_name(const Diagnosis& diagnosis) {
   const std::size_t order = diagnosis.baseline.model.body.order();

@@ -6,22 +6,15 @@
 #include <optional>
 #include <string>
 
+#include "services/core/display/prompt.hpp"
+
 namespace stillhand::lab {
 
 /// From the announcement of a trial to the first tick of its ramp [s]: time to compute motion and
 /// target.
 inline constexpr double kTrialLead_s = 1.0;
 
-enum class PromptKind : std::uint8_t {
-  kNothing,
-  kInstructions,
-  kIdentification,
-  kPractice,
-  kTrial,
-  kBreak,
-  kQuestion,
-  kEnd
-};
+using PromptKind = display::PromptKind;
 
 /// Lengths that the topic takes [bytes].
 inline constexpr std::size_t kMostPromptText = 1000;

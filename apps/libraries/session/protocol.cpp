@@ -16,6 +16,8 @@
 namespace stillhand::session {
 namespace {
 
+using motion::MotionKind;
+
 // Every use of the session's seed has a stream of its own.
 enum class SeedUse : std::uint32_t { kOrder = 1, kReference = 2, kMotion = 3, kRepeat = 4 };
 
@@ -51,7 +53,7 @@ void check_road(const ProtocolOptions& options) {
 
 // It keeps its own intensity.
 void set_ride(PlannedTrial& planned) {
-  planned.motion = Motion::kRide;
+  planned.motion = MotionKind::kRide;
   planned.band_low_hz = kLowest_hz;
   planned.band_high_hz = kHighest_hz;
   planned.band_order = 0;
@@ -63,12 +65,12 @@ void set_tracking_motion(PlannedTrial& planned, const ProtocolOptions& options) 
   planned.motion = options.motion;
   planned.peak_m_s2 = 7.5;
   switch (options.motion) {
-    case Motion::kBandNoise:  // paper III-C
+    case MotionKind::kBandNoise:  // paper III-C
       planned.band_low_hz = 0.7;
       planned.band_high_hz = 2.0;
       planned.rms_m_s2 = 1.6;
       return;
-    case Motion::kRoad: {
+    case MotionKind::kRoad: {
       // The speed turns the road's wavelengths into frequencies: a slow vehicle meets no high ones,
       // a fast one no low ones.
       const Range described_hz = motion::road_band_hz(options.road_speed_m_s);
@@ -76,8 +78,9 @@ void set_tracking_motion(PlannedTrial& planned, const ProtocolOptions& options) 
       planned.band_high_hz = std::min(kHighest_hz, described_hz.max);
       break;
     }
-    case Motion::kRide:
-    case Motion::kInterleaved:
+    case MotionKind::kStill:
+    case MotionKind::kRide:
+    case MotionKind::kMultisine:
       planned.band_low_hz = kLowest_hz;
       planned.band_high_hz = kHighest_hz;
       break;
@@ -142,7 +145,7 @@ PlannedTrial identification_trial(const ProtocolOptions& options) {
   planned.trial.ramp_ticks = ticks_in(options.ramp_s);
   planned.label = Condition::kIdentification;
   planned.moving = true;
-  planned.motion = Motion::kBandNoise;  // white noise whatever the trials use: paper III-A
+  planned.motion = MotionKind::kBandNoise;  // white noise whatever the trials use: paper III-A
   planned.band_low_hz = 0.7;
   planned.band_high_hz = 4.0;
   // "Band-pass filtered" in the paper, whose Fig. 4 has its estimate to 10 Hz: the filter lets some
@@ -182,7 +185,7 @@ PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
   planned.label = condition;
   planned.moving = condition != Condition::kA;
   ProtocolOptions own = options;
-  if (condition == Condition::kP) own.motion = Motion::kInterleaved;
+  if (condition == Condition::kP) own.motion = MotionKind::kMultisine;
   set_tracking_motion(planned, own);
   planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
   const ConditionRow& row = row_of(condition);
@@ -203,7 +206,7 @@ PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
 std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
   check_duration("--trial-seconds", options.trial_s);
   check_duration("--identify-seconds", options.identify_s);
-  if (options.motion == Motion::kRoad) check_road(options);
+  if (options.motion == MotionKind::kRoad) check_road(options);
   std::vector<Condition> order = options.conditions;
   std::mt19937_64 engine(derived_seed(options.seed, SeedUse::kOrder, 0));
   std::shuffle(order.begin(), order.end(), engine);
@@ -225,22 +228,7 @@ std::uint64_t repeat_seed(std::uint64_t seed, std::uint64_t repeat) {
 
 motion::MotionProfile motion_profile(const PlannedTrial& planned) {
   motion::MotionProfile profile;
-  if (planned.moving) {
-    switch (planned.motion) {
-      case Motion::kBandNoise:
-        profile.kind = motion::MotionKind::kBandNoise;
-        break;
-      case Motion::kRoad:
-        profile.kind = motion::MotionKind::kRoad;
-        break;
-      case Motion::kRide:
-        profile.kind = motion::MotionKind::kRide;
-        break;
-      case Motion::kInterleaved:
-        profile.kind = motion::MotionKind::kMultisine;
-        break;
-    }
-  }
+  if (planned.moving) profile.kind = planned.motion;
   profile.band_low_hz = planned.band_low_hz;
   profile.band_high_hz = planned.band_high_hz;
   profile.band_order = planned.band_order;

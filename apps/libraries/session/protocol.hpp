@@ -11,9 +11,6 @@
 
 namespace stillhand::session {
 
-/// Kind of platform motion during B and C; kInterleaved during P.
-enum class Motion : std::uint8_t { kBandNoise, kRoad, kRide, kInterleaved };
-
 /// The numbers of a session, from the command line; defaults are the paper's unless said otherwise.
 struct ProtocolOptions {
   std::vector<Condition> conditions;
@@ -22,9 +19,9 @@ struct ProtocolOptions {
   bool planned = false;      ///< the pegged trial alone, in the motion of a ride
   double ramp_s = 2.0;       ///< [s] motion and target fade in and out
   std::uint64_t seed = 1;    ///< of everything random
-  Motion motion = Motion::kBandNoise;
-  std::string road_class = "B";  ///< Motion::kRoad: ISO 8608, A (very good) to H
-  double road_speed_m_s = 20.0;  ///< [m/s] Motion::kRoad: speed of the vehicle
+  motion::MotionKind motion = motion::MotionKind::kBandNoise;  ///< of B and C: noise, road, ride
+  std::string road_class = "B";  ///< MotionKind::kRoad: ISO 8608, A (very good) to H
+  double road_speed_m_s = 20.0;  ///< [m/s] MotionKind::kRoad: speed of the vehicle
   /// [s] period of both multisines of P, which then is the one trial after the pegged one; 0: none
   double perturb_period_s = 0.0;
   bool perturb_swapped = false;  ///< P: the platform takes the lines of the motor, and the reverse
@@ -39,10 +36,10 @@ struct PlannedTrial {
   std::uint64_t reference_seed;  ///< phases of the target
   Condition label;               ///< or an identification: blinded
   bool moving;
-  Motion motion;
-  double band_low_hz, band_high_hz;  ///< [Hz]
-  int band_order;                    ///< roll-off of the noise at each edge; 0: abrupt
-  double rms_m_s2, peak_m_s2;        ///< [m/s^2]
+  motion::MotionKind motion = motion::MotionKind::kBandNoise;  ///< multisine: interleaved, of P
+  double band_low_hz, band_high_hz;                            ///< [Hz]
+  int band_order;              ///< roll-off of the noise at each edge; 0: abrupt
+  double rms_m_s2, peak_m_s2;  ///< [m/s^2]
   std::uint64_t motion_seed;
   bool cancellation;
   bool command_filter;  ///< in process only

@@ -218,7 +218,6 @@ class Investigation {
     const Hypothesis* const first = out_.single.data();
     const Hypothesis* const pairs = out_.pairs.data();
     add_best(ranked(first + 2, first + out_.single.size()), kJudgedSingles, settings);
-    out_.judged_singles = settings.size();
     add_best(ranked(pairs, pairs + out_.pairs.size()), kJudgedPairs, settings);
     StudyOptions on_time = options_at(out_.best());
     on_time.canceller = "now";

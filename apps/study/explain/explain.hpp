@@ -59,7 +59,6 @@ struct Explanation {
   std::vector<Hypothesis> pairs;  ///< best first
   std::vector<Judged>
       judged;  ///< no cause, the paper's chain, then the best singles, then the best pairs
-  std::size_t judged_singles = 0;     ///< number of them before the pairs
   std::optional<Judged> compensated;  ///< the best explanation with today's canceller, on time
   std::vector<UnitSensitivity> units;
   std::optional<Spread> spread;

@@ -143,9 +143,9 @@ motion::MotionTrajectory trial_motion(TrialMotion motion, Tick duration_ticks, T
   protocol.trial_s = static_cast<double>(duration_ticks) * kControlPeriod_s;
   protocol.ramp_s = static_cast<double>(ramp_ticks) * kControlPeriod_s;
   protocol.seed = seed;
-  protocol.motion = motion == TrialMotion::kBand   ? session::Motion::kBandNoise
-                    : motion == TrialMotion::kRoad ? session::Motion::kRoad
-                                                   : session::Motion::kRide;
+  protocol.motion = motion == TrialMotion::kBand   ? motion::MotionKind::kBandNoise
+                    : motion == TrialMotion::kRoad ? motion::MotionKind::kRoad
+                                                   : motion::MotionKind::kRide;
   motion::MotionProfile profile =
       motion_profile(tracking_trial(protocol, session::Condition::kB, 1));
   profile.road_class = protocol.road_class;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/report/csv_cells.hpp"
 #include "apps/study/report/diagnoses_output.hpp"
 #include "apps/study/report/output.hpp"
@@ -8,13 +9,14 @@
 namespace stillhand::study {
 namespace {
 
-using csv::quoted;
 using csv::row;
 using csv::text;
+using report::csv_quoted;
 
 // The participant's code, or the number of a simulated subject.
 std::string subject_key(const StudyRecord& record, std::size_t index) {
-  return record.recorded ? quoted(record.recorded->participants[index]) : std::to_string(index + 1);
+  return record.recorded ? csv_quoted(record.recorded->participants[index])
+                         : std::to_string(index + 1);
 }
 
 // Headers of numbers of the table, each after a comma, and their cells of a trial.
@@ -125,8 +127,8 @@ CsvFile trials_file(const RecordedSource& source) {
                     headers(session::numbers(session::kCsv)) +
                     ",lost share [-],block,place in plan,in tables\n";
   for (const RecordedTrial& trial : source.trials) {
-    out += row({quoted(trial.participant), quoted(trial.session), std::to_string(trial.number),
-                std::to_string(trial.place),
+    out += row({csv_quoted(trial.participant), csv_quoted(trial.session),
+                std::to_string(trial.number), std::to_string(trial.place),
                 name_of(trial.condition) + cells(session::numbers(session::kCsv), trial.tracked),
                 text(trial.lost_share), planned_number(trial.block), planned_number(trial.step),
                 source.used.contains(id_of(trial)) ? "1" : "0"});
@@ -139,8 +141,9 @@ CsvFile simulated_file(const SimulatedSide& simulated) {
   std::string out = "subject,condition" + headers(session::samples()) + "\n";
   for (std::size_t i = 0; i < simulated.results.size(); ++i) {
     for (const auto& [condition, trial] : simulated.results[i].trials) {
-      out += row({simulated.same_people ? quoted(simulated.participants[i]) : std::to_string(i + 1),
-                  name_of(condition) + cells(session::samples(), trial)});
+      out += row(
+          {simulated.same_people ? csv_quoted(simulated.participants[i]) : std::to_string(i + 1),
+           name_of(condition) + cells(session::samples(), trial)});
     }
   }
   return {"simulated.csv", out};

@@ -28,12 +28,4 @@ inline std::string row(std::initializer_list<std::string> cells) {
   return out + "\n";
 }
 
-/// Quoted by RFC 4180 where it is needed: codes and names come from files.
-inline std::string quoted(const std::string& word) {
-  if (word.find_first_of(",\"\r\n") == std::string::npos) return word;
-  std::string out = "\"";
-  for (const char each : word) out += each == '"' ? std::string("\"\"") : std::string(1, each);
-  return out + '"';
-}
-
 }  // namespace stillhand::study::csv

@@ -224,18 +224,19 @@ std::vector<CsvFile> diagnoses_csv(const Diagnoses& diagnoses) {
     return remaining ? csv::text(remaining->left.rms) : std::string();
   };
   for (const auto& [code, person] : diagnoses.people) {
-    people += csv::row({csv::quoted(code), person.verdict, csv::text(person.unseen_s),
+    people += csv::row({report::csv_quoted(code), person.verdict, csv::text(person.unseen_s),
                         person.by_linear ? csv::text(person.by_linear->without.rms) : "",
                         cell(person.by_linear), cell(person.by_augmented),
-                        csv::quoted(person.not_replayed)});
+                        report::csv_quoted(person.not_replayed)});
     for (const Finding& finding : person.findings) {
-      findings += csv::row({csv::quoted(code), finding.kind, finding.channel, finding.where,
+      findings += csv::row({report::csv_quoted(code), finding.kind, finding.channel, finding.where,
                             csv::text(finding.explained_n), csv::text(finding.before_n),
                             csv::text(finding.after_n)});
     }
   }
   for (const auto& [code, why] : diagnoses.failed) {
-    people += csv::row({csv::quoted(code), "not diagnosed", "", "", "", "", csv::quoted(why)});
+    people += csv::row(
+        {report::csv_quoted(code), "not diagnosed", "", "", "", "", report::csv_quoted(why)});
   }
   return {{"diagnoses.csv", people}, {"findings.csv", findings}};
 }

@@ -49,7 +49,7 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
     Series series{.kind = Kind::kBox, .colour = colour_of(condition)};
     // The whiskers cover the whole range, as in the paper.
     series.boxes = {
-        {place, box.minimum, box.lower_quartile, box.median, box.upper_quartile, box.maximum, {}}};
+        {place, box.minimum, box.lower_quartile, box.median, box.upper_quartile, box.maximum}};
     series.show_in_legend = false;
     // Without a known value the box's zeros are no result.
     if (metrics[metric].known > 0) {

@@ -66,7 +66,6 @@ Comparison compared(const HeldOut& before, const HeldOut& after) {
   for (std::size_t b = 0; b < blocks.before.size(); ++b) {
     differences.push_back(blocks.before[b] - blocks.after[b]);
     mean += differences.back() / count;
-    if (blocks.after[b] < blocks.before[b]) result.share_better += 1.0 / count;
   }
   double square = 0.0;
   for (std::size_t b = 0; b < blocks.before.size(); ++b) {

@@ -30,7 +30,6 @@ struct Comparison {
   double rmse_ratio = 1.0;  ///< [-] after / before
   double t = 0.0;           ///< [-] mean of the blocks' differences over its standard error
   double p = 1.0;           ///< [-] of such signs and ranks by chance: Wilcoxon's signed-rank test
-  double share_better = 0.0;  ///< [-] of the blocks
 };
 
 Comparison compared(const HeldOut& before, const HeldOut& after);

@@ -12,7 +12,6 @@
 #include "services/core/identification/arx.hpp"
 #include "services/core/identification/lagged_products.hpp"
 #include "services/core/signal/decompositions.hpp"
-#include "services/core/signal/spectrum.hpp"
 
 namespace stillhand::identification {
 namespace {
@@ -25,8 +24,6 @@ constexpr double kLeastSingularRatio = 1e-9;
 // Squares of singular values are known to some 1e-14 of the largest.
 constexpr double kPlainRatio = 1e-6;
 constexpr int kMostLags = 2 * kMaxOrder + 1;
-constexpr double kBandLowHz = 0.7;
-constexpr double kBandHighHz = 4.0;
 
 double rms_about_mean(const std::vector<double>& samples) {
   const Eigen::Map<const Eigen::ArrayXd> x(samples.data(),
@@ -61,22 +58,6 @@ bool plainly_persistent(const std::vector<double>& a, int count) {
   const Eigen::MatrixXd gram = lagged_gram({&a}, count - 1, kMostLags - 1, end);
   const Eigen::VectorXd squares = signal::symmetric_eigenvalues(gram);
   return squares(0) > kPlainRatio * kPlainRatio * squares(count - 1);
-}
-
-double band_share(const Record& record) {
-  // Segments of 4 s resolve 0.25 Hz, enough for an edge at 0.7 Hz.
-  std::size_t segment = std::min(record.size(), static_cast<std::size_t>(4.0 * record.rate_hz));
-  segment = std::max<std::size_t>(8, segment - segment % 2);
-  const auto spectra = signal::cross_spectra(record.acceleration_m_s2, record.acceleration_m_s2,
-                                             record.rate_hz, segment);
-  double inside = 0.0;
-  double all = 0.0;
-  for (std::size_t k = 0; k < spectra.s_xx.size(); ++k) {
-    const double f = spectra.frequency_hz[k];
-    all += spectra.s_xx[k];
-    if (f >= kBandLowHz && f <= kBandHighHz) inside += spectra.s_xx[k];
-  }
-  return all > 0.0 ? inside / all : 0.0;
 }
 
 // Ten equations a parameter, and the lags themselves.
@@ -117,7 +98,6 @@ Excitation check_excitation(const Record& record, int order) {
   found.acceleration_rms_m_s2 = rms_about_mean(record.acceleration_m_s2);
   found.force_rms_n = rms_about_mean(record.force_n);
   if (found.acceleration_rms_m_s2 > 0.0) {
-    found.band_share = band_share(record);
     found.persistent_order = persistent_order(record.acceleration_m_s2);
   }
   found.verdict = shortcoming(found, order);

@@ -13,7 +13,6 @@ struct Excitation {
   std::string verdict;                 ///< one line for a person
   double acceleration_rms_m_s2 = 0.0;  ///< [m/s^2] about its mean
   double force_rms_n = 0.0;            ///< [N] about its mean
-  double band_share = 0.0;             ///< [-] of the acceleration's power, within 0.7 to 4 Hz
   int persistent_order = 0;  ///< [-] largest n with a well conditioned n x n covariance of a, <= 26
 };
 

@@ -12,8 +12,6 @@
 namespace stillhand::statistics {
 namespace {
 
-constexpr double kWhiskerReach = 1.5;  // in interquartile ranges; Tukey, section 2C
-
 std::vector<double> sorted(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values;
@@ -82,18 +80,6 @@ BoxPlot box_plot(const std::vector<double>& values) {
   out.lower_quartile = quantile_of_sorted(ascending, 0.25);
   out.median = quantile_of_sorted(ascending, 0.5);
   out.upper_quartile = quantile_of_sorted(ascending, 0.75);
-  const double reach = kWhiskerReach * (out.upper_quartile - out.lower_quartile);
-  // A quartile between a value and an outlier lies outside every value that a whisker may end at.
-  out.lower_whisker = out.lower_quartile;
-  out.upper_whisker = out.upper_quartile;
-  for (const double x : ascending) {
-    if (x < out.lower_quartile - reach || x > out.upper_quartile + reach) {
-      out.outliers.push_back(x);
-    } else {
-      out.lower_whisker = std::min(out.lower_whisker, x);
-      out.upper_whisker = std::max(out.upper_whisker, x);
-    }
-  }
   return out;
 }
 

@@ -32,17 +32,13 @@ struct MeanInterval {
 /// Needs two values.  @param confidence  [-] between 0 and 1
 MeanInterval mean_interval(const std::vector<double>& values, double confidence = 0.95);
 
-/// Box-and-whisker plot after Tukey, Eq. ST-4.  Quartiles are of type 7 (as in ggplot2 and
-/// Matplotlib; R's boxplot() takes hinges, which differ a little).  A whisker ends at the outermost
-/// value within 1.5 interquartile ranges of the box, and never inside the box.
+/// Box-and-whisker plot, Eq. ST-4.  Quartiles are of type 7 (as in ggplot2 and Matplotlib; R's
+/// boxplot() takes hinges, which differ a little).
 struct BoxPlot {
-  double lower_whisker = 0.0;
   double lower_quartile = 0.0;
   double median = 0.0;
   double upper_quartile = 0.0;
-  double upper_whisker = 0.0;
-  std::vector<double> outliers;  ///< values beyond the whiskers, ascending
-  double minimum = 0.0;          ///< for whiskers over the whole range, as in the paper's Fig. 10
+  double minimum = 0.0;  ///< for whiskers over the whole range, as in the paper's Fig. 10
   double maximum = 0.0;
 };
 

@@ -129,7 +129,6 @@ FTest f_test(double f, double numerator_df, double denominator_df) {
 // Eq. ST-8 to ST-10 from the eigenvalues of E^-1 H; p metrics, q and v degrees of freedom.
 MultivariateTest test_of(const VectorXd& eigenvalues, double p, double q, double v) {
   MultivariateTest out;
-  out.hypothesis_df = q;
   const double s = std::min(p, q);
   double log_lambda = 0.0, complement_of_trace = 0.0;
   for (Index i = 0; i < static_cast<Index>(s); ++i) {

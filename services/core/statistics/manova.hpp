@@ -24,11 +24,10 @@ struct FTest {
 
 /// One effect, for all metrics together.
 struct MultivariateTest {
-  double hypothesis_df = 0.0;  ///< q [-]
-  double wilks_lambda = 1.0;   ///< det E / det(E + H), Eq. ST-8
-  FTest wilks;                 ///< Rao's approximation, Eq. ST-9; exact for p or q of 1 or 2
-  double pillai_trace = 0.0;   ///< tr H (H + E)^-1, Eq. ST-10
-  FTest pillai;                ///< Eq. ST-10
+  double wilks_lambda = 1.0;  ///< det E / det(E + H), Eq. ST-8
+  FTest wilks;                ///< Rao's approximation, Eq. ST-9; exact for p or q of 1 or 2
+  double pillai_trace = 0.0;  ///< tr H (H + E)^-1, Eq. ST-10
+  FTest pillai;               ///< Eq. ST-10
 };
 
 struct Manova {

@@ -49,11 +49,9 @@ Margin margin_on(const VehicleConfig& config, const std::vector<double>& grid_hz
                  const std::vector<Complex>& vehicle, const IdentifiedResponse& theta) {
   Margin out;
   double largest = 0.0;
-  double distance2 = std::numeric_limits<double>::infinity();
   Complex before;
   for (std::size_t k = 0; k < grid_hz.size(); ++k) {
     const Complex loop = vehicle[k] * theta.at(grid_hz[k]);
-    distance2 = std::min(distance2, std::norm(1.0 - loop));
     if (k > 0 && (before.imag() > 0.0) != (loop.imag() > 0.0)) {
       const double part = before.imag() / (before.imag() - loop.imag());
       const double real = before.real() + part * (loop.real() - before.real());
@@ -66,7 +64,6 @@ Margin margin_on(const VehicleConfig& config, const std::vector<double>& grid_hz
   }
   out.critical_gain_m_s2_rad =
       largest > 0.0 ? config.gain_m_s2_rad / largest : std::numeric_limits<double>::infinity();
-  out.modulus = std::sqrt(distance2);
   out.stable = largest < 1.0;
   return out;
 }
@@ -93,10 +90,7 @@ Margin margin(const VehicleConfig& config, const IdentifiedResponse& theta, int 
   const VehicleConfig used = with_gain(config);
   const auto grid = grid_over(theta, steps);
   Margin out = margin_on(used, grid, vehicle_on(used, grid), theta);
-  if (!(config.gain_m_s2_rad > 0.0)) {
-    out.modulus = 1.0;
-    out.stable = true;
-  }
+  if (!(config.gain_m_s2_rad > 0.0)) out.stable = true;
   return out;
 }
 

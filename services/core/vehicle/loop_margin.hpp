@@ -24,11 +24,10 @@ struct IdentifiedResponse {
 struct Margin {
   double critical_gain_m_s2_rad = 0.0;  ///< smallest gain at which the loop is not stable
   double frequency_hz = 0.0;            ///< of the oscillation at that gain
-  double modulus = 0.0;                 ///< min |1 - L| at the vehicle's own gain; VH-10
   bool stable = false;                  ///< gain below critical gain
 };
 
-/// Margin of the loop through vehicle and hand, METHOD Eq. VH-9 and VH-10:
+/// Margin of the loop through vehicle and hand, METHOD Eq. VH-9:
 ///
 ///   L(jw) = V(jw) Theta(jw),   1 - L = 0 on the limit
 ///   G_critical = G / max { Re L(jw): Im L(jw) = 0, Re L(jw) > 0 }

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/files/digest/digest.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <openssl/evp.h>
 
 #include <array>
 #include <fstream>
 #include <memory>
 #include <random>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
 namespace stillhand::rig {
 namespace {
 
-std::string hexadecimal(const unsigned char* bytes, std::size_t size) {
-  constexpr const char* kDigits = "0123456789abcdef";
-  std::string text;
-  for (std::size_t i = 0; i < size; ++i) {
-    text += kDigits[bytes[i] >> 4];
-    text += kDigits[bytes[i] & 15];
-  }
-  return text;
+std::string hexadecimal(std::span<const unsigned char> bytes) {
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 }  // namespace
@@ -29,7 +26,7 @@ std::string new_nonce() {
   std::random_device source;
   std::array<unsigned char, 16> bytes{};
   for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(source() & 0xffu);
-  return hexadecimal(bytes.data(), bytes.size());
+  return hexadecimal(bytes);
 }
 
 std::string sha256(const std::string& bytes) {
@@ -38,7 +35,7 @@ std::string sha256(const std::string& bytes) {
   if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
     throw std::runtime_error("SHA-256 failed");
   }
-  return hexadecimal(digest.data(), size);
+  return hexadecimal({digest.data(), size});
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {
@@ -57,7 +54,7 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   if (!good || !file.eof() || EVP_DigestFinal_ex(state.get(), digest.data(), &size) != 1) {
     throw std::runtime_error(path.string() + ": cannot be read for its SHA-256");
   }
-  return hexadecimal(digest.data(), size);
+  return hexadecimal({digest.data(), size});
 }
 
 std::string digest_line(const std::string& bytes, const std::string& name) {

@@ -2,32 +2,24 @@
 #include "services/messages/display/codec.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <sstream>
 
 namespace stillhand::display {
 namespace {
 
+// Prompts of core and bus have one order.
 PromptKind kind_of(stillhand_msgs::PromptKind kind) {
-  switch (kind) {
-    case stillhand_msgs::PROMPT_NOTHING:
-      return PromptKind::kNothing;
-    case stillhand_msgs::PROMPT_INSTRUCTIONS:
-      return PromptKind::kInstructions;
-    case stillhand_msgs::PROMPT_IDENTIFICATION:
-      return PromptKind::kIdentification;
-    case stillhand_msgs::PROMPT_PRACTICE:
-      return PromptKind::kPractice;
-    case stillhand_msgs::PROMPT_TRIAL:
-      return PromptKind::kTrial;
-    case stillhand_msgs::PROMPT_BREAK:
-      return PromptKind::kBreak;
-    case stillhand_msgs::PROMPT_QUESTION:
-      return PromptKind::kQuestion;
-    case stillhand_msgs::PROMPT_END:
-      return PromptKind::kEnd;
-  }
-  return PromptKind::kNothing;  // from another version
+  // From another version, or below zero.
+  const auto number = static_cast<std::uint32_t>(kind);
+  return number <= static_cast<std::uint32_t>(stillhand_msgs::PROMPT_END)
+             ? static_cast<PromptKind>(number)
+             : PromptKind::kNothing;
 }
+static_assert(static_cast<std::size_t>(stillhand_msgs::PROMPT_NOTHING) ==
+              static_cast<std::size_t>(PromptKind::kNothing));
+static_assert(static_cast<std::size_t>(stillhand_msgs::PROMPT_END) ==
+              static_cast<std::size_t>(PromptKind::kEnd));
 
 }  // namespace
 

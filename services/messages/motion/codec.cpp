@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/messages/motion/codec.hpp"
 
+#include <cstddef>
+
 namespace stillhand::motion {
+
+// Motions of core and bus have one order.
+static_assert(static_cast<std::size_t>(stillhand_msgs::MOTION_STILL) ==
+              static_cast<std::size_t>(MotionKind::kStill));
+static_assert(static_cast<std::size_t>(stillhand_msgs::MOTION_RIDE) ==
+              static_cast<std::size_t>(MotionKind::kRide));
 
 stillhand_msgs::PlatformCommand to_idl(const PlatformCommand& command, Tick tick,
                                        std::int64_t trial) {
@@ -17,22 +25,10 @@ stillhand_msgs::PlatformCommand to_idl(const PlatformCommand& command, Tick tick
 
 MotionProfile from_idl(const stillhand_msgs::TrialAssignment& assignment, const Trial& trial) {
   MotionProfile profile;
-  switch (assignment.motion()) {
-    case stillhand_msgs::MOTION_STILL:
-      profile.kind = MotionKind::kStill;
-      break;
-    case stillhand_msgs::MOTION_BAND_NOISE:
-      profile.kind = MotionKind::kBandNoise;
-      break;
-    case stillhand_msgs::MOTION_MULTISINE:
-      profile.kind = MotionKind::kMultisine;
-      break;
-    case stillhand_msgs::MOTION_ROAD:
-      profile.kind = MotionKind::kRoad;
-      break;
-    case stillhand_msgs::MOTION_RIDE:
-      profile.kind = MotionKind::kRide;
-      break;
+  // Another version may know more, or a number be below zero: it stays still.
+  const auto kind = static_cast<std::uint32_t>(assignment.motion());
+  if (kind <= static_cast<std::uint32_t>(stillhand_msgs::MOTION_RIDE)) {
+    profile.kind = static_cast<MotionKind>(kind);
   }
   profile.band_low_hz = assignment.band_low_hz();
   profile.band_high_hz = assignment.band_high_hz();

@@ -41,7 +41,7 @@ RideRecord from_csv(const std::string& path) {
                       "a gap of " + std::to_string(gap.missing_rows) + " rows after it",
                       "a ride without missing rows");
   }
-  return {even_rate_hz(path, file.time_s), accel->values, path, 0};
+  return {even_rate_hz(path, file.time_s), accel->values, path};
 }
 
 // Puts a session's sample after the ones before; false when it cannot follow them.
@@ -53,7 +53,6 @@ bool append(RideRecord& ride, std::int64_t lost_ticks, double accel_m_s2) {
     ride.accel_m_s2.push_back(last + share * (accel_m_s2 - last));
   }
   ride.accel_m_s2.push_back(accel_m_s2);
-  ride.bridged_ticks += lost_ticks;
   return true;
 }
 
@@ -61,7 +60,7 @@ RideRecord from_mcap(const std::string& path) {
   recording::FileSource file(path);
   recording::McapReader reader(file);
   if (!reader.status().ok()) throw ConfigError(path, reader.status().text, "an MCAP recording");
-  RideRecord ride{kControlRateHz, {}, path, 0};
+  RideRecord ride{kControlRateHz, {}, path};
   std::int64_t last_tick = -1;
   std::int64_t gap_after = -1;
   recording::MessageFilter filter;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,8 +10,7 @@ namespace stillhand::motion {
 struct RideRecord {
   double rate_hz = 0.0;
   std::vector<double> accel_m_s2;
-  std::string source;              ///< file, for messages
-  std::int64_t bridged_ticks = 0;  ///< [ticks] of a session's recording, lost there, interpolated
+  std::string source;  ///< file, for messages
 
   [[nodiscard]] double length_s() const noexcept {
     return static_cast<double>(accel_m_s2.size()) / rate_hz;

@@ -95,7 +95,7 @@ table_of("OneSampleRow", "kOneSample", rows)
 # MANOVA: summary.manova for Wilks and Pillai; one metric alone by anova(lm), where Lambda = SSE / (SSE + SSH) and
 # Pillai's trace its complement, with one F for both.
 say("struct EffectRow {")
-say("  double hypothesis_df, lambda, wilks_f, wilks_1, wilks_2, wilks_p, trace, pillai_f, pillai_1, pillai_2, pillai_p;")
+say("  double lambda, wilks_f, wilks_1, wilks_2, wilks_p, trace, pillai_f, pillai_1, pillai_2, pillai_p;")
 say("};")
 say("struct ManovaRow {")
 say("  int set, subjects, conditions, replicates, metrics; double error_df; EffectRow condition, subject;")
@@ -107,11 +107,11 @@ effect_text <- function(y, formula, term) {
     h <- a[term, "Sum Sq"]
     e <- a["Residuals", "Sum Sq"]
     f <- c(a[term, "F value"], a[term, "Df"], a["Residuals", "Df"], a[term, "Pr(>F)"])
-    return(row_text(c(a[term, "Df"], e / (e + h), f, h / (e + h), f)))
+    return(row_text(c(e / (e + h), f, h / (e + h), f)))
   }
   w <- summary(manova(formula), test = "Wilks")$stats[term, ]
   p <- summary(manova(formula), test = "Pillai")$stats[term, ]
-  row_text(c(w["Df"], w[2:6], p[2:6]))
+  row_text(c(w[2:6], p[2:6]))
 }
 say("inline constexpr ManovaRow kManova[] = {")
 manova_row <- function(set, subjects, conditions, replicates, metrics) {
@@ -131,19 +131,18 @@ for (metrics in 1:3) manova_row(2, 20, 3, 1, metrics)
 for (conditions in 2:6) for (metrics in 1:5) for (replicates in c(1, 3)) manova_row(3, 9, conditions, replicates, metrics)
 say("};")
 
-# Describing: each metric of each set; quantile type 7, intervals of t.test, box by the rule of the README.
+# Describing: each metric of each set; quantile type 7, intervals of t.test, quartiles.
 say("struct DescriptionRow {")
 say("  int set, metric; double mean, deviation, median, low_95, high_95, low_99, high_99; double quantiles[7];")
-say("  double lower_whisker, lower_quartile, upper_quartile, upper_whisker; int below, above;")
+say("  double lower_quartile, upper_quartile;")
 say("};")
 array("kProbabilities", c(0, 0.05, 0.25, 1 / 3, 0.6, 0.975, 1))
 say("inline constexpr DescriptionRow kDescriptions[] = {")
 for (set in 1:3) for (metric in seq_len(ncol(metrics_of(trials[[set]])))) {
   x <- metrics_of(trials[[set]])[, metric]
   q <- quantile(x, c(0.25, 0.75), type = 7)
-  inside <- x[x >= q[1] - 1.5 * (q[2] - q[1]) & x <= q[2] + 1.5 * (q[2] - q[1])]
   text <- number(c(set - 1, metric - 1, mean(x), sd(x), median(x), t.test(x)$conf.int, t.test(x, conf.level = 0.99)$conf.int))
-  box <- number(c(min(inside), q, max(inside), sum(x < min(inside)), sum(x > max(inside))))
+  box <- number(q)
   say("    {", paste(text, collapse = ", "), ", ", row_text(quantile(x, c(0, 0.05, 0.25, 1 / 3, 0.6, 0.975, 1), type = 7)), ", ",
       paste(box, collapse = ", "), "},")
 }

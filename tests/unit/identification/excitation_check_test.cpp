@@ -31,9 +31,6 @@ TEST(ExcitationTest, ThePapersMotionSuffices) {
   const Excitation sut = of(a);
   EXPECT_TRUE(sut.sufficient) << sut.verdict;
   EXPECT_NEAR(sut.acceleration_rms_m_s2, 1.6, 0.01);
-  // Fourth-order Butterworth edges leave a tenth of the power outside the two -3 dB frequencies.
-  EXPECT_GT(sut.band_share, 0.8);
-  EXPECT_LT(sut.band_share, 1.0);
 }
 
 TEST(ExcitationTest, EachSinusoidCountsTwo) {
@@ -53,10 +50,7 @@ TEST(ExcitationTest, VerdictSaysWhatIsMissing) {
 }
 
 TEST(ExcitationTest, WhiteNoiseReachesTheLargestOrder) {
-  const Excitation sut = of(support::white_noise(3000, 1.0, 4));
-  EXPECT_EQ(sut.persistent_order, 25);
-  // 3.3 of 25 Hz, 60 averages over about 14 lines: relative deviation 1/sqrt(14 * 29) = 5 %.
-  EXPECT_NEAR(sut.band_share, 3.3 / 25.0, 0.03);
+  EXPECT_EQ(of(support::white_noise(3000, 1.0, 4)).persistent_order, 25);
 }
 
 }  // namespace

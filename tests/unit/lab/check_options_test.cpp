@@ -80,12 +80,12 @@ TEST_F(CheckOptionsTest, ARideAndItsMotionGoTogether) {
   options_.ride = "x.csv";
   EXPECT_THAT(refusal(), AllOf(StartsWith("--ride: got x.csv"), HasSubstr("--motion ride")));
   options_.ride.clear();
-  options_.protocol.motion = session::Motion::kRide;
+  options_.protocol.motion = motion::MotionKind::kRide;
   EXPECT_THAT(refusal(), AllOf(StartsWith("--ride: got nothing"), HasSubstr("--motion ride")));
 }
 
 TEST_F(CheckOptionsTest, ARideAsLongAsTheTrialIsTakenAndAShorterOneIsNot) {
-  options_.protocol.motion = session::Motion::kRide;
+  options_.protocol.motion = motion::MotionKind::kRide;
   options_.ride = ride(5.5);
   EXPECT_EQ(refusal(), "accepted");
   options_.ride = ride(4.5);
@@ -163,7 +163,7 @@ TEST_F(CheckOptionsTest, ArgumentsOfTheServicesAreRefusedWhereTheyRunAlready) {
   options_.who = Operator::kMouse;
   EXPECT_THAT(refusal(), StartsWith("--attach: "));
   options_ = good;
-  options_.protocol.motion = session::Motion::kRoad;
+  options_.protocol.motion = motion::MotionKind::kRoad;
   EXPECT_THAT(refusal(), StartsWith("--attach: "));
 }
 

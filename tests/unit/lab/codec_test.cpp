@@ -132,7 +132,7 @@ TEST(LabCodecTest, AnAnnouncementOfATrialHasItsTicksAndTheSeedOfItsTarget) {
 TEST(LabCodecTest, TheAssignmentHoldsTheBlindedPart) {
   session::PlannedTrial planned{};
   planned.trial.number = 4;
-  planned.motion = session::Motion::kRoad;
+  planned.motion = motion::MotionKind::kRoad;
   planned.cancellation = true;
   planned.motion_seed = 5;
   EXPECT_EQ(assignment_of(planned).motion(), stillhand_msgs::MOTION_STILL);

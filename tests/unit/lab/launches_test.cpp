@@ -129,10 +129,10 @@ TEST_F(LaunchesTest, TheRecorderAloneGetsTheParticipantOfAnExperiment) {
 
 TEST_F(LaunchesTest, MotionGetsTheRideOrTheRoadWithEveryBitOfItsSpeed) {
   EXPECT_THAT(of("motion").arguments, Not(Contains("--ride")));
-  options_.protocol.motion = session::Motion::kRide;
+  options_.protocol.motion = motion::MotionKind::kRide;
   options_.ride = "rides/two words.csv";
   EXPECT_EQ(value_of(of("motion"), "--ride"), "rides/two words.csv");
-  options_.protocol.motion = session::Motion::kRoad;
+  options_.protocol.motion = motion::MotionKind::kRoad;
   options_.protocol.road_class = "F";
   EXPECT_EQ(value_of(of("motion"), "--road-class"), "F");
   for (const double speed_m_s : {1.0 / 3.0, 0.1 + 0.2, 20.0}) {

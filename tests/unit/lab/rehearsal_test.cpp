@@ -43,7 +43,7 @@ class RehearsalTest : public testing::Test {
 
 // One sine, which the platform can follow when it is fast and small enough.
 motion::RideRecord sine(double m_s2, double hz, double seconds) {
-  motion::RideRecord ride{100.0, {}, "ride.csv", 0};
+  motion::RideRecord ride{100.0, {}, "ride.csv"};
   for (int i = 0; i < static_cast<int>(seconds * ride.rate_hz); ++i) {
     ride.accel_m_s2.push_back(m_s2 * std::sin(2.0 * std::numbers::pi * hz * i / ride.rate_hz));
   }
@@ -65,7 +65,7 @@ TEST_F(RehearsalTest, EveryTrialThatMovesIsAskedForAndNoOther) {
 // At 20 m/s class B comes to 1.2 m/s^2 (rehearsed, not refused), class E to 9.6, beyond any peak of
 // 7.5.
 TEST_F(RehearsalTest, ARoadThatThePlatformCannotFollowIsRefusedByClassAndSpeed) {
-  options.motion = session::Motion::kRoad;
+  options.motion = motion::MotionKind::kRoad;
   EXPECT_EQ(refusal(), "accepted");
   options.road_class = "E";
   EXPECT_THAT(refusal(), AllOf(StartsWith("--road-class: got E at 20 m/s, want "), HasSubstr("7.5"),
@@ -73,7 +73,7 @@ TEST_F(RehearsalTest, ARoadThatThePlatformCannotFollowIsRefusedByClassAndSpeed) 
 }
 
 TEST_F(RehearsalTest, ARideThatThePlatformCannotFollowIsRefused) {
-  options.motion = session::Motion::kRide;
+  options.motion = motion::MotionKind::kRide;
   EXPECT_EQ(refusal(sine(1.0, 2.0, kTrial_s)), "accepted");
   EXPECT_THAT(refusal(sine(1000.0, 5.0, kTrial_s)), StartsWith("ride.csv: got "));
   EXPECT_THAT(refusal(sine(0.0, 2.0, kTrial_s)),
@@ -81,7 +81,7 @@ TEST_F(RehearsalTest, ARideThatThePlatformCannotFollowIsRefused) {
 }
 
 TEST_F(RehearsalTest, WhatIsRemovedOfARideIsKnownBeforehand) {
-  options.motion = session::Motion::kRide;
+  options.motion = motion::MotionKind::kRide;
   // 1 m/s^2 at 0.1 Hz needs 2.5 m of travel and goes; at 2 Hz it stays: half of the variance.
   motion::RideRecord both = sine(1.0, 2.0, kTrial_s);
   const motion::RideRecord slow = sine(1.0, 0.1, kTrial_s);

@@ -238,7 +238,7 @@ TEST(SummaryJsonTest, AMotionSaysWhatItsKindNeeds) {
   LabOptions options;
   options.protocol.road_class = "D";
   options.protocol.road_speed_m_s = 12.5;
-  const auto motion_of = [&](session::Motion kind) {
+  const auto motion_of = [&](motion::MotionKind kind) {
     session::TrialOutcome moving = outcome(1, Condition::kB);
     moving.planned.motion = kind;
     moving.asked = motion::MotionReport{};
@@ -246,15 +246,15 @@ TEST(SummaryJsonTest, AMotionSaysWhatItsKindNeeds) {
     moving.asked->corner_hz = 0.2;
     return json_of({}, {moving}, options)["trials"][0]["motion"];
   };
-  EXPECT_EQ(motion_of(session::Motion::kBandNoise)["kind"], "noise");
-  EXPECT_EQ(motion_of(session::Motion::kBandNoise)["rms_m_s2"], 1.25);
-  EXPECT_FALSE(motion_of(session::Motion::kBandNoise).contains("corner_hz"));
-  EXPECT_EQ(motion_of(session::Motion::kRoad)["kind"], "road");
-  EXPECT_EQ(motion_of(session::Motion::kRoad)["road_class"], "D");
-  EXPECT_EQ(motion_of(session::Motion::kRoad)["speed_m_s"], 12.5);
-  EXPECT_EQ(motion_of(session::Motion::kRide)["kind"], "ride");
-  EXPECT_EQ(motion_of(session::Motion::kRide)["corner_hz"], 0.2);
-  EXPECT_FALSE(motion_of(session::Motion::kRide).contains("road_class"));
+  EXPECT_EQ(motion_of(motion::MotionKind::kBandNoise)["kind"], "noise");
+  EXPECT_EQ(motion_of(motion::MotionKind::kBandNoise)["rms_m_s2"], 1.25);
+  EXPECT_FALSE(motion_of(motion::MotionKind::kBandNoise).contains("corner_hz"));
+  EXPECT_EQ(motion_of(motion::MotionKind::kRoad)["kind"], "road");
+  EXPECT_EQ(motion_of(motion::MotionKind::kRoad)["road_class"], "D");
+  EXPECT_EQ(motion_of(motion::MotionKind::kRoad)["speed_m_s"], 12.5);
+  EXPECT_EQ(motion_of(motion::MotionKind::kRide)["kind"], "ride");
+  EXPECT_EQ(motion_of(motion::MotionKind::kRide)["corner_hz"], 0.2);
+  EXPECT_FALSE(motion_of(motion::MotionKind::kRide).contains("road_class"));
 }
 
 TEST(SummaryJsonTest, AnIdentificationThatFailedSaysWhy) {

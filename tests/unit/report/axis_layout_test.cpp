@@ -170,9 +170,9 @@ TEST(ExtentTest, BarsStandOnZeroAndTheirWidthCounts) {
   EXPECT_DOUBLE_EQ(extent_x(panel).high, 2.3);
 }
 
-TEST(ExtentTest, OutliersOfABoxCount) {
+TEST(ExtentTest, TheWhiskersOfABoxCount) {
   Panel panel;
-  panel.series = {Series{.kind = Kind::kBox, .boxes = {{1, 2, 3, 4, 5, 6, {12, -3}}}}};
+  panel.series = {Series{.kind = Kind::kBox, .boxes = {{1, -3, 3, 4, 5, 12}}}};
   EXPECT_EQ(extent_y(panel).low, -3.0);
   EXPECT_EQ(extent_y(panel).high, 12.0);
 }

@@ -23,11 +23,11 @@ TEST(FigureTableTest, EveryValueIsARowAndAGapIsAnEmptyCell) {
 
 TEST(FigureTableTest, ABoxIsOneRowANumberAndACategoryIsNamed) {
   Panel panel{.x = {.ticks = {{1.0, "A"}, {2.0, "B"}}}};
-  panel.series = {{.kind = Kind::kBox, .boxes = {{1.8, 1, 2, 3, 4, 5, {9}}}}};
+  panel.series = {{.kind = Kind::kBox, .boxes = {{1.8, 1, 2, 3, 4, 5}}}};
   EXPECT_EQ(table_of(panel),
             kHead + std::string("1,,,low,1.8,B,1,,\n1,,,lower quartile,1.8,B,2,,\n"
                                 "1,,,median,1.8,B,3,,\n1,,,upper quartile,1.8,B,4,,\n"
-                                "1,,,high,1.8,B,5,,\n1,,,outlier,1.8,B,9,,\n"));
+                                "1,,,high,1.8,B,5,,\n"));
 }
 
 TEST(FigureTableTest, ATextWithACommaOrAQuoteIsOneCell) {

@@ -39,7 +39,7 @@ inline Figure every_kind() {
   panel.series.push_back(Series{.label = "boxes",
                                 .kind = Kind::kBox,
                                 .colour = static_cast<Colour>(colour),
-                                .boxes = {{4, 0.5, 1, 1.5, 2, 2.5, {3.5, -0.5}}}});
+                                .boxes = {{4, 0.5, 1, 1.5, 2, 2.5}}});
   return {.name = "every_kind", .caption = "Every kind.", .panels = {panel}};
 }
 

@@ -31,6 +31,19 @@ TEST(TextTest, LettersOfEveryLengthPassAndBytesThatAreNoXmlCharacterAreReplaced)
             " x");  // U+0085, a control character
 }
 
+TEST(TextTest, ACellOfCsvIsQuotedOnlyWhereItMustBe) {
+  EXPECT_EQ(csv_quoted("plain; 5' stick"), "plain; 5' stick");
+  EXPECT_EQ(csv_quoted("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_quoted("5\" \"stick\""), "\"5\"\" \"\"stick\"\"\"");
+  EXPECT_EQ(csv_quoted("a\r\nb"), "\"a\r\nb\"");
+}
+
+TEST(TextTest, WhatReplacesATextIsNotReplacedAgain) {
+  std::string text = "aab";
+  replace_all(text, "a", "aa");
+  EXPECT_EQ(text, "aaaab");
+}
+
 TEST(TextTest, ScriptNumbersReadBackToNineDigits) {
   for (const double value : {0.0, -1.0 / 3.0, 1234567.89, 5e-7, 1e100, -2.5e-100}) {
     EXPECT_NEAR(std::stod(decimal(value)), value, 1e-8 * std::abs(value)) << decimal(value);

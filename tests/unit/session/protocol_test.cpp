@@ -98,7 +98,7 @@ TEST(ProtocolTest, APerturbedTrialIsOnThePegAndWithoutTheMotorIfTheStickIsHeld) 
     const PlannedTrial sut = plan(options).back();
     EXPECT_EQ(sut.trial.phase, held ? TrialPhase::kPegged : TrialPhase::kTracking);
     EXPECT_EQ(sut.cancellation, !held);
-    EXPECT_EQ(sut.motion, Motion::kInterleaved);
+    EXPECT_EQ(sut.motion, motion::MotionKind::kMultisine);
   }
 }
 
@@ -111,7 +111,7 @@ const PlannedTrial& moving_trial(const std::vector<PlannedTrial>& trials) {
 
 ProtocolOptions road(const std::string& road_class, double speed_m_s) {
   ProtocolOptions options = three_conditions(1);
-  options.motion = Motion::kRoad;
+  options.motion = motion::MotionKind::kRoad;
   options.road_class = road_class;
   options.road_speed_m_s = speed_m_s;
   return options;
@@ -120,14 +120,15 @@ ProtocolOptions road(const std::string& road_class, double speed_m_s) {
 // ISO 8608 describes 0.011 to 2.83 cycles/m, the platform follows 0.05 to 6 Hz.
 TEST(ProtocolTest, ARoadKeepsToWhatTheStandardDescribesAndThePlatformFollows) {
   const auto at_20 = plan(road("B", 20.0));
-  EXPECT_EQ(moving_trial(at_20).motion, Motion::kRoad);
+  EXPECT_EQ(moving_trial(at_20).motion, motion::MotionKind::kRoad);
   EXPECT_DOUBLE_EQ(moving_trial(at_20).band_low_hz, 0.22);
   EXPECT_EQ(moving_trial(at_20).band_high_hz, 6.0);
   EXPECT_EQ(moving_trial(at_20).rms_m_s2, 0.0);
   const auto at_1 = plan(road("H", 1.0));
   EXPECT_EQ(moving_trial(at_1).band_low_hz, 0.05);
   EXPECT_DOUBLE_EQ(moving_trial(at_1).band_high_hz, 2.83);
-  EXPECT_EQ(at_20[0].motion, Motion::kBandNoise);  // identification, whatever the trials use
+  // Identification, whatever the trials use.
+  EXPECT_EQ(at_20[0].motion, motion::MotionKind::kBandNoise);
 }
 
 std::string road_error(const ProtocolOptions& options) {
@@ -253,7 +254,7 @@ TEST(MotionProfileTest, IsStillWhereThePlatformDoesNotMove) {
 TEST(MotionProfileTest, ARoadAndARideStayWhatTheyAre) {
   EXPECT_EQ(motion_profile(moving_trial(plan(road("C", 10.0)))).kind, motion::MotionKind::kRoad);
   ProtocolOptions options = three_conditions(1);
-  options.motion = Motion::kRide;
+  options.motion = motion::MotionKind::kRide;
   const motion::MotionProfile sut = motion_profile(moving_trial(plan(options)));
   EXPECT_EQ(sut.kind, motion::MotionKind::kRide);
   EXPECT_EQ(sut.band_low_hz, 0.05);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 
 namespace stillhand::measurement {
@@ -103,20 +104,13 @@ std::string without_zeros_at_end(std::string& bytes) {
   return std::to_string(zeros) + " zero bytes at the end are left out.";
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
-    text.replace(at, from.size(), to);
-    at += to.size();
-  }
-}
-
 // Signs that programs write for a blank, a minus and the end of a line.
 void take_plain_signs(std::string& text) {
   if (!is_ascii(text)) {
-    replace_all(text, "\u00A0", " ");  // no-break space
-    for (const char* blank : {"\u202F", "\u2007", "\u2009"}) replace_all(text, blank, " ");
-    replace_all(text, "\u2212", "-");  // minus sign
-    replace_all(text, "\uFEFF", "");   // byte order mark within a joined file
+    report::replace_all(text, "\u00A0", " ");  // no-break space
+    for (const char* blank : {"\u202F", "\u2007", "\u2009"}) report::replace_all(text, blank, " ");
+    report::replace_all(text, "\u2212", "-");  // minus sign
+    report::replace_all(text, "\uFEFF", "");   // byte order mark within a joined file
   }
   if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
 }

@@ -30,7 +30,6 @@ void include_box(Extent& extent, const Axis& axis, const Box& box) {
        {box.low, box.lower_quartile, box.median, box.upper_quartile, box.high}) {
     include(extent, axis, value);
   }
-  for (const double value : box.outliers) include(extent, axis, value);
 }
 
 }  // namespace

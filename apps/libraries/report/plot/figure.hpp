@@ -65,7 +65,7 @@ enum class Kind {
   kBox             ///< [boxes]
 };
 
-/// Five numbers, and the values beyond the whiskers.
+/// Five numbers; the whiskers reach from the lowest to the highest.
 struct Box {
   double at = 0.0;  ///< place on the x axis, mostly a category's number
   double low = 0.0;
@@ -73,7 +73,6 @@ struct Box {
   double median = 0.0;
   double upper_quartile = 0.0;
   double high = 0.0;
-  std::vector<double> outliers = {};
 };
 
 struct Series {

@@ -9,15 +9,7 @@
 namespace stillhand::report {
 namespace {
 
-// A text as a cell of CSV, RFC 4180.
-std::string cell(std::string_view text) {
-  std::string out = clean(text);
-  if (out.find_first_of(",\"") == std::string::npos) return out;
-  for (std::size_t at = 0; (at = out.find('"', at)) != std::string::npos; at += 2) {
-    out.insert(at, 1, '"');
-  }
-  return '"' + out + '"';
-}
+std::string cell(std::string_view text) { return csv_quoted(clean(text)); }
 
 std::string number_at(const std::vector<double>& values, std::size_t i) {
   return i < values.size() && std::isfinite(values[i]) ? decimal(values[i]) : std::string();
@@ -41,7 +33,6 @@ void add_boxes(const Series& series, const std::string& begin, const Axis& x, st
     row("median", box.at, box.median);
     row("upper quartile", box.at, box.upper_quartile);
     row("high", box.at, box.high);
-    for (const double outlier : box.outliers) row("outlier", box.at, outlier);
   }
 }
 

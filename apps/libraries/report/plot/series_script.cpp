@@ -143,7 +143,6 @@ std::string block_text(const std::string& block, const std::string& rows) {
 
 SeriesScript box_script(const Series& series, const PanelLayout& layout, const std::string& block) {
   std::string boxes;
-  std::string outliers;
   for (const Box& box : series.boxes) {
     const auto drawable = [&](double value) { return layout.y.drawable(value); };
     if (!layout.x.drawable(box.at)) continue;
@@ -152,9 +151,6 @@ SeriesScript box_script(const Series& series, const PanelLayout& layout, const s
       boxes += row({box.at, box.low, box.lower_quartile, box.median, box.upper_quartile, box.high,
                     series.bar_width});
     }
-    for (const double value : box.outliers) {
-      if (drawable(value)) outliers += row({box.at, value});
-    }
   }
   SeriesScript script;
   if (!boxes.empty()) {
@@ -162,11 +158,6 @@ SeriesScript box_script(const Series& series, const PanelLayout& layout, const s
     script.clauses.push_back(block + " using 1:3:2:6:5:7 with candlesticks whiskerbars 0.5" +
                              line_style(series) + fill_style(series, true));
     script.clauses.push_back(block + " using 1:4:4:4:4:7 with candlesticks lw 2.6" +
-                             colour_style(series));
-  }
-  if (!outliers.empty()) {
-    script.data += block_text(block + "o", outliers);
-    script.clauses.push_back(block + "o using 1:2 with points" + point_style(series) +
                              colour_style(series));
   }
   return script;

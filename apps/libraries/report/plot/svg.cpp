@@ -11,12 +11,6 @@ namespace {
 // For systems without DejaVu Sans; all of these are narrower, so nothing overlaps.
 constexpr std::string_view kFonts = "'DejaVu Sans','Liberation Sans',Arial,Helvetica,sans-serif";
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
-    text.replace(at, from.size(), to);
-  }
-}
-
 void insert_after_all(std::string& text, std::string_view mark, std::string_view added) {
   replace_all(text, mark, std::string(mark) + std::string(added));
 }

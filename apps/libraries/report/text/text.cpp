@@ -115,6 +115,19 @@ std::string gnuplot_quoted(std::string_view text) {
   return out + "'";
 }
 
+std::string csv_quoted(std::string_view text) {
+  std::string out(text);
+  if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
+  replace_all(out, "\"", "\"\"");
+  return '"' + out + '"';
+}
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+}
+
 std::string decimal(double value) { return to_text(value, std::chars_format::general, 9); }
 
 std::string number(double value, int decimals) {

@@ -20,6 +20,12 @@ std::string html_escaped(std::string_view text);
 /// quote inside is doubled.
 std::string gnuplot_quoted(std::string_view text);
 
+/// As a cell of CSV, RFC 4180: in quotes where it has a comma, a quote or an end of line.
+std::string csv_quoted(std::string_view text);
+
+/// Each `from` becomes `to`; what was put in is not searched again.
+void replace_all(std::string& text, std::string_view from, std::string_view to);
+
 /// For scripts: decimal text of up to nine significant digits, with an ASCII minus, in any locale.
 std::string decimal(double value);
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "services/core/signal/moments.hpp"
+
 namespace stillhand::session {
 
 double rms(std::span<const double> values) noexcept {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
+  return values.empty() ? 0.0 : signal::rms(values);
 }
 
 TrialForces trial_forces(const ForceSignals& signals, double rate_hz) {

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/signal/moments.hpp"
 #include "services/core/statistics/multiple_testing.hpp"
 
 namespace stillhand::diagnosis {
@@ -14,17 +16,6 @@ namespace {
 
 constexpr double kLags_s[] = {0.0, 0.05, 0.1, 0.2, 0.4, 0.8};
 constexpr int kGainCosines = 8;
-
-std::vector<double> lagged(const std::vector<double>& x, std::size_t lag,
-                           const std::vector<Stretch>& stretches) {
-  std::vector<double> y(x.size());
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
-      y[n] = x[n - stretch.first >= lag ? n - lag : stretch.first];
-    }
-  }
-  return y;
-}
 
 std::vector<double> mapped(const std::vector<double>& x, const std::function<double(double)>& f) {
   std::vector<double> y(x.size());
@@ -116,9 +107,7 @@ void ask_about_signals(const Screening& screening, Questions& questions) {
 void ask_about_state(const Screening& screening, Questions& questions) {
   const std::vector<double>& y = screening.body_output();
   const auto& stretches = screening.signals().stretches();
-  double square = 0.0;
-  for (const double value : y) square += value * value;
-  const double size = std::sqrt(square / static_cast<double>(y.size()));
+  const double size = signal::rms(y);
   if (!(size > 0.0)) return;
   const auto passed = [&](const std::function<double(double)>& f) {
     return screening.through_body(mapped(y, [&](double value) { return f(value / size); }));

@@ -7,6 +7,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/diagnosis/record/digits.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -27,12 +28,7 @@ std::vector<double> response_of(const Screening& screening, const std::vector<do
 }
 
 double deviation_of(const std::vector<double>& values) {
-  double mean = 0.0;
-  for (const double x : values) mean += x;
-  mean /= static_cast<double>(values.size());
-  double square = 0.0;
-  for (const double x : values) square += (x - mean) * (x - mean);
-  return std::sqrt(square / static_cast<double>(values.size()));
+  return std::sqrt(signal::variance(values));
 }
 
 double quantile_of(std::vector<double> values, double share) {

@@ -369,6 +369,17 @@ std::vector<double> differenced(const std::vector<double>& x,
   return result;
 }
 
+std::vector<double> lagged(const std::vector<double>& x, std::size_t lag,
+                           const std::vector<Stretch>& stretches) {
+  std::vector<double> y(x.size());
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      y[n] = x[n - stretch.first >= lag ? n - lag : stretch.first];
+    }
+  }
+  return y;
+}
+
 FreeRun free_run(const Model& model, const Signals& signals, bool with_time_only) {
   ModelRun run;
   if (with_time_only) {

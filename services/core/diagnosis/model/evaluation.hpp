@@ -89,5 +89,8 @@ std::vector<double> through_path(const std::vector<double>& x, std::span<const d
 /// x(n) - x(n-1), every stretch from rest.
 std::vector<double> differenced(const std::vector<double>& x,
                                 const std::vector<Stretch>& stretches);
+/// x(n - lag); up to `lag` of a stretch, its first value.
+std::vector<double> lagged(const std::vector<double>& x, std::size_t lag,
+                           const std::vector<Stretch>& stretches);
 
 }  // namespace stillhand::diagnosis

@@ -12,6 +12,7 @@
 #include "services/core/diagnosis/record/excited_band.hpp"
 #include "services/core/diagnosis/record/wide_sums.hpp"
 #include "services/core/signal/butterworth.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -54,14 +55,9 @@ std::vector<double> trapezoidal_sum(const std::vector<double>& x, double rate_hz
   return sum;
 }
 
-void set_moments(Signal& signal) {
-  const auto count = static_cast<double>(signal.values.size());
-  double sum = 0.0;
-  for (const double x : signal.values) sum += x;
-  signal.mean = sum / count;
-  double square = 0.0;
-  for (const double x : signal.values) square += (x - signal.mean) * (x - signal.mean);
-  signal.deviation = std::sqrt(square / count);
+void set_moments(Signal& of) {
+  of.mean = signal::mean(of.values);
+  of.deviation = std::sqrt(signal::mean_square(of.values, of.mean));
 }
 
 double correlation(const Signal& left, const std::vector<double>& values) {
