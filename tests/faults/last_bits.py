@@ -27,7 +27,8 @@ def failed_cases(program, seed):
     done = subprocess.run([TESTS / program, "--gtest_brief=1"], env=environment, capture_output=True, text=True)
     cases = re.findall(r"^\[  FAILED  \] (\S+) \(\d+ ms\)", done.stdout, re.MULTILINE)
     if done.returncode not in (0, 77) and not cases:
-        sys.exit(f"last_bits: {program}, seed {seed}: ended with status {done.returncode}: {done.stderr.strip()[-200:]}")
+        said = done.stderr.strip()[-200:]
+        sys.exit(f"last_bits: {program}, seed {seed}: ended with status {done.returncode}: {said}")
     return cases
 
 
