@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "idl/enumerator.hpp"
+
 namespace stillhand::lab {
 namespace {
 
@@ -25,11 +27,7 @@ EventKind kind_of(stillhand_msgs::EventKind kind) {
 
 // Actions and prompts of session and bus have one order.
 Action action_of(stillhand_msgs::SessionAction action) {
-  // From another version, or below zero.
-  const auto number = static_cast<std::uint32_t>(action);
-  return number <= static_cast<std::uint32_t>(stillhand_msgs::SESSION_ABORT)
-             ? static_cast<Action>(number)
-             : Action::kUnknown;
+  return of_bus(action, stillhand_msgs::SESSION_ABORT, Action::kUnknown);
 }
 static_assert(static_cast<std::size_t>(stillhand_msgs::SESSION_START) ==
               static_cast<std::size_t>(Action::kStart));

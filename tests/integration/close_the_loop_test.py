@@ -77,7 +77,7 @@ class CloseTheLoopTest(LoopCase):
         self.judge_model_as_a_file()
 
     def judge_model_as_a_file(self):
-        """Of the models that a canceller would get as a file, a session takes none that was changed."""
+        """A session refuses a model file that was changed."""
         good = self.out / "control_model.json"
         text = good.read_text()
         edited = json.loads(text)

@@ -200,8 +200,10 @@ TEST(MotionCodecTest, EveryKindOfMotionKeepsItsName) {
     EXPECT_EQ(motion::to_string(motion::from_idl(message, {}).kind), name);
   }
   stillhand_msgs::TrialAssignment newer;
-  newer.motion(static_cast<stillhand_msgs::MotionKind>(stillhand_msgs::MOTION_RIDE + 1));
-  EXPECT_EQ(motion::from_idl(newer, {}).kind, motion::MotionKind::kStill);
+  for (const int bad : {static_cast<int>(stillhand_msgs::MOTION_RIDE) + 1, -1, 256}) {
+    newer.motion(static_cast<stillhand_msgs::MotionKind>(bad));
+    EXPECT_EQ(motion::from_idl(newer, {}).kind, motion::MotionKind::kStill) << bad;
+  }
 }
 
 TEST(CancellationCodecTest, EveryFieldOfASensedSampleReachesTheCore) {
@@ -290,8 +292,10 @@ TEST(DisplayCodecTest, EveryFieldOfAPromptReachesTheScreen) {
     message.steps(bad);
     EXPECT_EQ(display::from_idl(message).steps, 0) << bad;
   }
-  message.kind(static_cast<stillhand_msgs::PromptKind>(stillhand_msgs::PROMPT_END + 1));
-  EXPECT_EQ(display::from_idl(message).kind, display::PromptKind::kNothing);
+  for (const int bad : {static_cast<int>(stillhand_msgs::PROMPT_END) + 1, -1, 256}) {
+    message.kind(static_cast<stillhand_msgs::PromptKind>(bad));
+    EXPECT_EQ(display::from_idl(message).kind, display::PromptKind::kNothing) << bad;
+  }
 }
 
 TEST(DisplayCodecTest, EveryFieldOfAnAnswerIsSet) {

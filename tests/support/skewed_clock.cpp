@@ -15,8 +15,9 @@ namespace {
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 double setting(const char* name) {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing here sets a variable
   const char* value = std::getenv(name);
-  return value == nullptr ? 0.0 : std::atof(value);
+  return value == nullptr ? 0.0 : std::strtod(value, nullptr);
 }
 
 std::int64_t true_ns(clockid_t clock) {

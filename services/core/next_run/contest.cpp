@@ -256,7 +256,7 @@ void Contest::meet(std::size_t best, const Signals& judged,
   for (std::size_t j = 0; j < candidates_.size(); ++j) {
     const diagnosis::Effect& cause = candidates_[j].cause();
     const auto is_cause = [&](const diagnosis::Effect& each) { return is_same(each, cause); };
-    if (std::ranges::any_of(leader.model.effects, is_cause)) continue;
+    if (std::ranges::any_of(leader.model.effects, is_cause)) continue;  // the leader itself, too
     Candidate near = leader;
     near.heldout_rmse = candidates_[j].heldout_rmse;
     near.model.effects[near.effect] =

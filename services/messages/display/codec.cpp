@@ -5,16 +5,14 @@
 #include <cstddef>
 #include <sstream>
 
+#include "idl/enumerator.hpp"
+
 namespace stillhand::display {
 namespace {
 
 // Prompts of core and bus have one order.
 PromptKind kind_of(stillhand_msgs::PromptKind kind) {
-  // From another version, or below zero.
-  const auto number = static_cast<std::uint32_t>(kind);
-  return number <= static_cast<std::uint32_t>(stillhand_msgs::PROMPT_END)
-             ? static_cast<PromptKind>(number)
-             : PromptKind::kNothing;
+  return of_bus(kind, stillhand_msgs::PROMPT_END, PromptKind::kNothing);
 }
 static_assert(static_cast<std::size_t>(stillhand_msgs::PROMPT_NOTHING) ==
               static_cast<std::size_t>(PromptKind::kNothing));

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "idl/enumerator.hpp"
+
 namespace stillhand::motion {
 
 // Motions of core and bus have one order.
@@ -25,11 +27,7 @@ stillhand_msgs::PlatformCommand to_idl(const PlatformCommand& command, Tick tick
 
 MotionProfile from_idl(const stillhand_msgs::TrialAssignment& assignment, const Trial& trial) {
   MotionProfile profile;
-  // Another version may know more, or a number be below zero: it stays still.
-  const auto kind = static_cast<std::uint32_t>(assignment.motion());
-  if (kind <= static_cast<std::uint32_t>(stillhand_msgs::MOTION_RIDE)) {
-    profile.kind = static_cast<MotionKind>(kind);
-  }
+  profile.kind = of_bus(assignment.motion(), stillhand_msgs::MOTION_RIDE, MotionKind::kStill);
   profile.band_low_hz = assignment.band_low_hz();
   profile.band_high_hz = assignment.band_high_hz();
   profile.band_order = assignment.band_order();

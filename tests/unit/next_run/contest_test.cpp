@@ -35,13 +35,6 @@ TEST(ContestTest, RivalsThatExplainAsMuchMeet) {
   EXPECT_EQ(sut.candidates()[1].cause().channels, std::vector<std::string>{"z"});
 }
 
-// What one explains and the other does not, keeps it where it is.
-TEST(ContestTest, ARivalThatExplainsLessElsewhereStays) {
-  std::vector<Candidate> candidates{made::candidate("x"), made::candidate("z")};
-  const Contest sut(candidates, diagnosis::Signals(made::measured(3300, 8, 1), {"u"}, "y"));
-  EXPECT_GT(sut.before().twice_log_ratio(0, 1), 50.0);
-}
-
 // Two seconds of a tank's record, a sample each four, hold none.
 TEST(ContestTest, ASlowRecordingHasBlocksToo) {
   diagnosis::Measurement slow = made::measured(3300, 4, 1);

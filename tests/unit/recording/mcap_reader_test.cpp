@@ -196,7 +196,7 @@ TEST(McapReaderTest, ReadsAForeignFileWithoutChunksOrSummary) {
   EXPECT_TRUE(sut.damage().empty()) << sut.damage().front().text;
 }
 
-// A summary's index of attachments is known; one whose texts end too early is damage.
+// A summary's index of attachments is known; a byte behind its texts is damage.
 TEST(McapReaderTest, AnIndexOfAttachmentsIsPartOfASummary) {
   for (const std::size_t spare : {0u, 1u}) {
     Bytes file;
