@@ -24,7 +24,7 @@ struct Rows {
     const Body body = made::four_pole_body();
     const auto a_y = made::ride(kCount, 1);
     const auto a_z = made::ride(kCount, 2);
-    auto f = made::answer(body.numerators[0], body.denominator, a_y);
+    auto f = made::answer(body, a_y);
     const auto noise = made::white(kCount, 3);
     for (std::size_t n = 0; n < kCount; ++n) f[n] += 1.5 * a_z[n] + 0.3 * noise[n];
     table.columns = {{"a_y", "m/s^2", a_y}, {"a_z", "m/s^2", a_z}, {"f", "N", f}};

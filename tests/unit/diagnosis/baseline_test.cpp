@@ -12,16 +12,10 @@
 
 namespace stillhand::diagnosis::baseline_test {
 
+using made::signals_of;
+using made::sum_of;
+
 constexpr std::size_t kCount = 12000;
-
-Signals signals_of(const std::vector<double>& u, const std::vector<double>& y) {
-  return {made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y"};
-}
-
-std::vector<double> sum_of(std::vector<double> left, const std::vector<double>& right) {
-  for (std::size_t n = 0; n < left.size(); ++n) left[n] += right[n];
-  return left;
-}
 
 // First-order low-pass noise, correlation time 0.1 s.
 std::vector<double> coloured(std::size_t count, std::uint64_t seed, double rms) {
@@ -42,7 +36,7 @@ double response_error(const Body& got, const Body& want) {
 TEST(BaselineTest, ANoiseFreeBodyIsFoundToRounding) {
   const Body truth = made::four_pole_body();
   const auto u = made::ride(kCount, 1);
-  const Signals signals = signals_of(u, made::answer(truth.numerators[0], truth.denominator, u));
+  const Signals signals = signals_of(u, made::answer(truth, u));
   const Baseline sut = fit_baseline(signals, make_blocks(signals), 4);
   EXPECT_EQ(sut.model.body.order(), 4u);
   EXPECT_LT(response_error(sut.model.body, truth), 1e-6);
@@ -60,7 +54,7 @@ TEST(BaselineTest, ColouredNoiseDoesNotBiasTheBaseline) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(seed);
     const auto u = made::ride(kCount, seed);
-    const auto y = made::answer(truth.numerators[0], truth.denominator, u);
+    const auto y = made::answer(truth, u);
     const double rms = 0.1 * made::rms_of(y);
     const Signals signals = signals_of(u, sum_of(y, coloured(kCount, 10 + seed, rms)));
     const Baseline sut = fit_baseline(signals, make_blocks(signals), 4);
@@ -80,7 +74,7 @@ TEST(BaselineTest, ColouredNoiseDoesNotBiasTheBaseline) {
 TEST(BaselineTest, AStartIsIteratedUntilMostOfTheBiasIsGone) {
   const Body truth = made::four_pole_body();
   const auto u = made::ride(kCount, 1);
-  const auto y = made::answer(truth.numerators[0], truth.denominator, u);
+  const auto y = made::answer(truth, u);
   const double rms = 0.1 * made::rms_of(y);
   const auto noisy = sum_of(y, coloured(kCount, 11, rms));
   const Body sut = started_body({u}, noisy, {}, signals_of(u, noisy), 4);
@@ -90,7 +84,7 @@ TEST(BaselineTest, AStartIsIteratedUntilMostOfTheBiasIsGone) {
 TEST(BaselineTest, GapsAndFilledSamplesAreNoObstacle) {
   const Body truth = made::two_pole_body();
   const auto u = made::ride(3000, 1);
-  auto y = made::answer(truth.numerators[0], truth.denominator, u);
+  auto y = made::answer(truth, u);
   // 5 s are lost in the middle, and 20 samples filled with something else.
   Measurement measurement;
   const auto without_middle = [](const std::vector<double>& x) {
@@ -131,7 +125,7 @@ TEST(BaselineTest, NoPoleForgetsMoreSlowlyThanTheBoundsSay) {
   // A drift, which a pole near 1 and an initial state would swallow.
   const Body truth = made::two_pole_body();
   const auto u = made::ride(kCount, 1);
-  auto y = made::answer(truth.numerators[0], truth.denominator, u);
+  auto y = made::answer(truth, u);
   for (std::size_t n = 0; n < kCount; ++n) y[n] += std::exp(-static_cast<double>(n) / 3000.0);
   const Signals signals = signals_of(u, y);
   const Baseline sut = fit_baseline(signals, make_blocks(signals), 4);

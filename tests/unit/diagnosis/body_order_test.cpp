@@ -20,13 +20,13 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// The answer of a body to a ride, cut off at `limit`, with 5 % of noise.
 Signals signals_of(const Body& body, double limit) {
   const auto u = made::ride(kCount, 1);
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   const double rms = made::rms_of(y);
   const auto noise = made::white(kCount, 3);
   for (std::size_t n = 0; n < kCount; ++n) {
     y[n] = std::clamp(y[n], -limit * rms, limit * rms) + 0.05 * rms * noise[n];
   }
-  return {made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y"};
+  return made::signals_of(u, y);
 }
 
 /// A body of order 2 with a limit at its output, fitted.

@@ -32,7 +32,7 @@ DetectionLines lines_of(
     residual[static_cast<Eigen::Index>(n)] = r;
     y[n] += r;
   }
-  const Signals signals(made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y");
+  const Signals signals = made::signals_of(u, y);
   const auto excitation = periodic_excitation_of(signals);
   EXPECT_TRUE(excitation.has_value());
   const auto repeated =

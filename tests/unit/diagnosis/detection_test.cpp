@@ -22,7 +22,7 @@ Measurement made_with(std::uint64_t seed, const Addition& more) {
   const auto v = made::ride(kCount, 3 * seed + 2);
   const auto noise = made::white(kCount, 3 * seed + 3);
   const Body body = made::two_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   for (std::size_t n = 0; n < kCount; ++n) y[n] += kNoise * noise[n] + more(n, y[n], v[n]);
   return made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
 }
@@ -95,7 +95,7 @@ TEST(DetectionTest, AProductOfTwoChannelsIsAskedForAllPairs) {
   const auto w = made::ride(kCount, 3);
   const auto noise = made::white(kCount, 4);
   const Body body = made::two_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.2 * v[n] * w[n] + kNoise * noise[n];
   const DetectionResult sut = detected_in(
       made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"w", "V", w}, {"y", "N", y}}));
@@ -112,7 +112,7 @@ TEST(DetectionTest, DistortionThatNoColumnShowsIsFoundAtTheLines) {
   const auto u = made::multisine(kCount, 1000, {5, 11, 15, 23, 31, 37, 45, 55}, 60);
   const auto noise = made::white(kCount, 61);
   const Body body = made::two_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   for (std::size_t n = 0; n < kCount; ++n) {
     y[n] += kNoise * noise[n] + (n < 125 ? 0.0 : 0.1 * u[n - 75] * u[n - 125]);
   }
@@ -134,7 +134,7 @@ TEST(DetectionTest, NoiseOnAPeriodicExcitationAnswersNoQuestion) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const auto u = made::multisine(kCount, 1000, {5, 11, 15, 23, 31, 37, 45, 55}, 70 + seed);
     const auto noise = made::answer({1.0}, {1.0, -0.9}, made::white(kCount, 90 + seed));
-    auto y = made::answer(body.numerators[0], body.denominator, u);
+    auto y = made::answer(body, u);
     for (std::size_t n = 0; n < kCount; ++n) y[n] += kNoise * noise[n];
     const DetectionResult sut = detected_in(made::measurement_of({{"u", "V", u}, {"y", "N", y}}));
     EXPECT_TRUE(sut.lines.has_value());

@@ -36,7 +36,7 @@ Measurement recording(double of_v = 0.0) {
   const auto v = made::ride(kCount, 2);
   const auto noise = made::white(kCount, 3);
   const Body body = made::two_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.02 * noise[n] + of_v * v[n];
   return made::measurement_of({{"u", "V", u}, {"a_x", "m/s^2", v}, {"y", "N", y}});
 }
@@ -148,9 +148,9 @@ TEST(DiagnoseTest, ANonlinearityBetweenTwoBodiesHasThePolesOfBoth) {
   const Body front = made::two_pole_body();
   const Body behind = made::four_pole_body();
   const auto u = made::ride(kRows, 1);
-  auto x = made::scaled_to(made::answer(front.numerators[0], front.denominator, u), 1.0);
+  auto x = made::scaled_to(made::answer(front, u), 1.0);
   for (double& each : x) each += 0.5 * std::abs(each);
-  auto y = made::scaled_to(made::answer(behind.numerators[0], behind.denominator, x), 1.0);
+  auto y = made::scaled_to(made::answer(behind, x), 1.0);
   const auto noise = made::white(kRows, 3);
   for (std::size_t n = 0; n < kRows; ++n) y[n] += 0.02 * noise[n];
   DiagnoseOptions options = options_of();
@@ -196,7 +196,7 @@ TEST(DiagnoseTest, WhatIsLeftNamesMeasuredChannelsOnly) {
   const auto w = made::ride(kLong, 9);
   const auto noise = made::white(kLong, 3);
   const Body body = made::two_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   for (std::size_t n = 0; n < kLong; ++n) {
     y[n] += 0.3 * v[n] * w[n] + 0.1 * y[n] * y[n] + 0.02 * noise[n];
   }

@@ -36,7 +36,7 @@ TEST(EffectKindsTest, AKindThatIsNotThereIsRefused) {
 TEST(EffectKindsTest, EveryProposalCanBeRunAndFitted) {
   const auto u = made::ride(kCount, 1);
   const Body body = made::four_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   const auto noise = made::white(kCount, 2);
   for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.05 * noise[n];
   const made::Studied of(made::measurement_of({{"u", "m/s^2", u},
@@ -89,8 +89,8 @@ TEST(EffectKindsTest, WithoutChannelsOrABodyTheirKindsAreSilent) {
 TEST(EffectKindsTest, SomeKindsComeOnceAlone) {
   const auto u = made::ride(kCount, 1);
   const Body body = made::two_pole_body();
-  const auto y = made::answer(body.numerators[0], body.denominator, u);
-  const Signals signals(made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y");
+  const auto y = made::answer(body, u);
+  const Signals signals = made::signals_of(u, y);
   const Blocks blocks = make_blocks(signals);
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
   const Effect once[] = {

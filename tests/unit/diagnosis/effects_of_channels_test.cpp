@@ -27,18 +27,14 @@ std::vector<double> rate_of(const std::vector<double>& x) {
 
 // Body on u plus something more at every sample.
 std::vector<double> answer_and(const std::function<double(std::size_t)>& more) {
-  auto y = made::answer(kBody.numerators[0], kBody.denominator, kU);
+  auto y = made::answer(kBody, kU);
   for (std::size_t n = 0; n < kCount; ++n) y[n] += more(n);
   return y;
 }
 
 Planted planted(const char* kind, const char* form, const std::vector<double>& y,
                 std::vector<Channel> others, std::vector<std::string> channels) {
-  Planted result = made::planted_in(y, kU, std::move(others));
-  result.kind = kind;
-  result.form = form;
-  result.channels = std::move(channels);
-  return result;
+  return made::planted_in(kind, form, y, kU, std::move(channels), std::move(others));
 }
 
 TEST(EffectsOfChannelsTest, AStaticPathFromAnotherChannel) {
@@ -187,7 +183,7 @@ TEST(EffectsOfChannelsTest, AProductOfTwoChannels) {
 
 TEST(EffectsOfChannelsTest, AGainThatFollowsAChannel) {
   const auto slow = made::ride(kCount, 6, 0.05, 0.3);
-  auto y = made::answer(kBody.numerators[0], kBody.denominator, kU);
+  auto y = made::answer(kBody, kU);
   for (std::size_t n = 0; n < kCount; ++n) y[n] *= 1.0 + 0.2 * slow[n];
   Planted sut = planted("bilinear", "gain of the body", y, {{"grip", "N", slow}}, {"grip"});
   // The centre is the channel's mean, about which the gain is 1.

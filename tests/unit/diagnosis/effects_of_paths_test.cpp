@@ -17,9 +17,7 @@ constexpr std::size_t kCount = 6000;
 const std::vector<double> kU = made::ride(kCount, 1);
 const Body kBody = made::two_pole_body();
 
-std::vector<double> answer(const std::vector<double>& u) {
-  return made::answer(kBody.numerators[0], kBody.denominator, u);
-}
+std::vector<double> answer(const std::vector<double>& u) { return made::answer(kBody, u); }
 
 std::vector<double> mapped(std::vector<double> x, double (*map)(double)) {
   for (double& value : x) value = map(value);
@@ -44,11 +42,7 @@ std::vector<double> sampled(const std::function<double(double)>& at) {
 
 Planted planted(const char* kind, const char* form, const std::vector<double>& y,
                 const std::vector<double>& u = kU, std::vector<std::string> channels = {}) {
-  Planted result = made::planted_in(y, u);
-  result.kind = kind;
-  result.form = form;
-  result.channels = std::move(channels);
-  return result;
+  return made::planted_in(kind, form, y, u, std::move(channels));
 }
 
 // The zeros of a four-pole body can absorb a sample or two of 10 ms of it, and the error then has
@@ -56,9 +50,7 @@ Planted planted(const char* kind, const char* form, const std::vector<double>& y
 TEST(EffectsOfPathsTest, ADelay) {
   const Body body = made::four_pole_body();
   const auto late = sampled([](double t_s) { return many_sines(t_s - 0.1134); });
-  Planted sut =
-      planted("delay", "of the input", made::answer(body.numerators[0], body.denominator, late),
-              sampled(many_sines));
+  Planted sut = planted("delay", "of the input", made::answer(body, late), sampled(many_sines));
   sut.order = 4;
   sut.wanted = {{0, 0.1134, 0.015, 0.015}};
   expect_proposed(sut);

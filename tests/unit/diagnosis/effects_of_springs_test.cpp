@@ -32,13 +32,10 @@ std::vector<double> with_spring(double force, double threshold,
 }
 
 Planted planted(const char* kind, const char* form, const std::vector<double>& y) {
-  Planted result = made::planted_in(y, kU);
-  result.kind = kind;
-  result.form = form;
-  return result;
+  return made::planted_in(kind, form, y, kU);
 }
 
-double size() { return made::rms_of(made::answer(kBody.numerators[0], kBody.denominator, kU)); }
+double size() { return made::rms_of(made::answer(kBody, kU)); }
 
 // Thresholds of 0.5, 1, 1.7 and 3 standard deviations are tried; the path has two numbers, of which
 // one is planted.

@@ -18,7 +18,7 @@ constexpr double kLength_s = 59.99;
 const std::vector<double> kU = made::ride(kCount, 1);
 const Body kBody = made::two_pole_body();
 
-std::vector<double> answer() { return made::answer(kBody.numerators[0], kBody.denominator, kU); }
+std::vector<double> answer() { return made::answer(kBody, kU); }
 
 std::vector<double> answer_and(const std::function<double(double t_s)>& more) {
   auto y = answer();
@@ -33,10 +33,7 @@ std::vector<double> answer_times(const std::function<double(double t_s)>& gain) 
 }
 
 Planted planted(const char* kind, const char* form, const std::vector<double>& y) {
-  Planted result = made::planted_in(y, kU);
-  result.kind = kind;
-  result.form = form;
-  return result;
+  return made::planted_in(kind, form, y, kU);
 }
 
 std::vector<Proposal> proposed_by(const char* kind, const std::vector<double>& y) {

@@ -11,6 +11,7 @@
 
 namespace stillhand::diagnosis::evaluation_test {
 
+using made::column_of;
 using testing::DoubleNear;
 using testing::Each;
 using testing::ElementsAre;
@@ -49,10 +50,6 @@ std::vector<double> free_response(const std::vector<double>& a, const std::vecto
   return {y.begin() + static_cast<std::ptrdiff_t>(before.size()), y.end()};
 }
 
-Eigen::MatrixXd as_column(const std::vector<double>& x) {
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-}
-
 // The free response counts until the pulse response has decayed to a thousandth of its peak; the
 // slowest mode, 2.5 Hz with ratio 0.35, forgets with 5.5/s: within 1.3 s or 130 samples.  What is
 // left there is below a few thousandths of the start.
@@ -63,8 +60,8 @@ TEST(EvaluationTest, InitialStatesRemoveAFreeResponseAndNothingElse) {
   std::vector<double> column = free_response(body.denominator, {1.0, -2.0, 0.5, 3.0}, kCut);
   const auto second = free_response(body.denominator, {-0.4, 0.3, 2.0, -1.0}, kCount - kCut);
   column.insert(column.end(), second.begin(), second.end());
-  const double size = as_column(column).norm();
-  Eigen::MatrixXd removed = as_column(column);
+  const double size = column_of(column).norm();
+  Eigen::MatrixXd removed = column_of(column);
   sut.remove_from(removed);
   EXPECT_LT(removed.norm(), 1e-2 * size);
   // Within the window to rounding: 100 samples are well inside it.
@@ -72,7 +69,7 @@ TEST(EvaluationTest, InitialStatesRemoveAFreeResponseAndNothingElse) {
   EXPECT_LT(removed.middleRows(kCut, 100).norm(), 1e-12 * size);
   // Nothing is touched from 2 s after a start on.
   const std::vector<double> noise = made::white(kCount, 3);
-  Eigen::MatrixXd touched = as_column(noise);
+  Eigen::MatrixXd touched = column_of(noise);
   sut.remove_from(touched);
   for (Eigen::Index n = 200; n < static_cast<Eigen::Index>(kCount); ++n) {
     if (n >= static_cast<Eigen::Index>(kCut) && n < static_cast<Eigen::Index>(kCut) + 200) continue;
@@ -80,7 +77,7 @@ TEST(EvaluationTest, InitialStatesRemoveAFreeResponseAndNothingElse) {
   }
   // White noise loses four of its directions a stretch: 8 of 2000, chi-squared within 8 +- 4
   // sqrt 16.
-  const double taken = as_column(noise).squaredNorm() - touched.squaredNorm();
+  const double taken = column_of(noise).squaredNorm() - touched.squaredNorm();
   EXPECT_GT(taken, 0.5);
   EXPECT_LT(taken, 24.0);
 }
@@ -117,7 +114,7 @@ TEST(EvaluationTest, AModeThatRingsForAnEighthOfTheRecordHasNoInitialState) {
 TEST(EvaluationTest, InitialStatesAreAProjection) {
   const Signals signals = signals_of(made::white(kCount, 1), made::white(kCount, 2));
   const InitialStates sut(made::four_pole_body(), signals, signals.weight());
-  const Eigen::VectorXd column = as_column(made::white(kCount, 4));
+  const Eigen::VectorXd column = column_of(made::white(kCount, 4));
   Eigen::MatrixXd once = column;
   sut.remove_from(once);
   Eigen::MatrixXd twice = once;
@@ -137,15 +134,15 @@ TEST(EvaluationTest, InitialStatesCountOnlyWhatWeighs) {
   std::vector<double> column = free_response(body.denominator, {1.0, -2.0}, kCut);
   column.resize(kCount, 0.0);
   for (std::size_t n = 0; n < kCount; ++n) column[n] *= weight[n];
-  Eigen::MatrixXd removed = as_column(column);
+  Eigen::MatrixXd removed = column_of(column);
   sut.remove_from(removed);
-  EXPECT_LT(removed.middleRows(0, 80).norm(), 1e-12 * as_column(column).norm());
+  EXPECT_LT(removed.middleRows(0, 80).norm(), 1e-12 * column_of(column).norm());
 }
 
 TEST(EvaluationTest, AStaticBodyHasNoInitialState) {
   const Signals signals = signals_of(made::white(kCount, 1), made::white(kCount, 2));
   const InitialStates sut({{{1.0}}, {1.0}, 0.0}, signals, signals.weight());
-  EXPECT_EQ(sut.part_of(as_column(made::white(kCount, 4))).norm(), 0.0);
+  EXPECT_EQ(sut.part_of(column_of(made::white(kCount, 4))).norm(), 0.0);
 }
 
 // The answer of a body that was moving before the record began: the residual from rest is the free
@@ -154,7 +151,7 @@ TEST(EvaluationTest, TheResidualOfTheTrueModelIsNothingWhateverThePast) {
   const Body body = made::two_pole_body();
   const std::size_t before = 300;
   const auto u = made::white(before + kCount, 5);
-  const auto y = made::answer(body.numerators[0], body.denominator, u);
+  const auto y = made::answer(body, u);
   const auto tail = [&](const std::vector<double>& x) {
     return std::vector<double>(x.begin() + before, x.end());
   };

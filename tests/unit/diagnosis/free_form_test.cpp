@@ -21,8 +21,7 @@ struct Recorded {
   std::vector<double> u = made::ride(kCount, 1);
   std::vector<double> theta = made::ride(kCount, 2, 0.1, 1.0);
   std::vector<double> noise = made::white(kCount, 3);
-  std::vector<double> y =
-      made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, u);
+  std::vector<double> y = made::answer(made::two_pole_body(), u);
 
   [[nodiscard]] Diagnosis diagnosed(double noise_n, std::size_t most_effects = 4) const {
     std::vector<double> with_noise = y;
@@ -85,8 +84,7 @@ TEST(FreeFormTest, ACurveOfTheInput) {
   const auto valve = [](double u) { return std::pow(std::max(0.0, u + 0.4), 1.6); };
   std::vector<double> acting = sut.u;
   for (double& u : acting) u = valve(u);
-  sut.y =
-      made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, acting);
+  sut.y = made::answer(made::two_pole_body(), acting);
   const Diagnosis found = sut.diagnosed(0.05 * made::rms_of(sut.y), 1);
   ASSERT_FALSE(found.effects.empty());
   const Effect& effect = found.model.effects.front();
@@ -106,8 +104,7 @@ TEST(FreeFormTest, AGainThatFollowsTheVibration) {
   for (std::size_t n = 0; n < kCount; ++n) {
     sut.u[n] *= std::exp2(std::sin(2.0 * std::numbers::pi * static_cast<double>(n) / 1200.0));
   }
-  sut.y =
-      made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, sut.u);
+  sut.y = made::answer(made::two_pole_body(), sut.u);
   double square = 1.0;
   for (std::size_t n = 0; n < kCount; ++n) {
     square += (sut.u[n] * sut.u[n] - square) * 0.005;  // 2 s at 100 Hz
@@ -139,13 +136,18 @@ Effect three_knots() {
           {-1.0, 2.0}};
 }
 
+Signals signals_over(const std::vector<double>& theta) {
+  return {made::measurement_of({{"u", "m/s^2", made::white(theta.size(), 5)},
+                                {"theta", "rad", theta},
+                                {"y", "N", made::white(theta.size(), 6)}}),
+          {"u"},
+          "y"};
+}
+
 TEST(FreeFormTest, ACurveIsLevelBeyondItsOuterKnots) {
   const Effect sut = three_knots();
   const std::vector<double> theta{-1e6, -1.0, -0.25, 0.0, 0.5, 2.0, 1e6};
-  const Signals signals(made::measurement_of({{"u", "m/s^2", made::white(theta.size(), 5)},
-                                              {"theta", "rad", theta},
-                                              {"y", "N", made::white(theta.size(), 6)}}),
-                        {"u"}, "y");
+  const Signals signals = signals_over(theta);
   Columns columns;
   effect_kind("free_form").terms(sut, signals, {}, columns);
   ASSERT_EQ(columns.size(), 2u);
@@ -158,10 +160,7 @@ TEST(FreeFormTest, ACurveIsLevelBeyondItsOuterKnots) {
 
 // A model file may hold anything.
 TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
-  const Signals signals(made::measurement_of({{"u", "m/s^2", made::white(50, 5)},
-                                              {"theta", "rad", made::white(50, 7)},
-                                              {"y", "N", made::white(50, 6)}}),
-                        {"u"}, "y");
+  const Signals signals = signals_over(made::white(50, 7));
   const auto knot = [](const char* name, double at) { return constant(name, "rad", at); };
   Columns columns;
   const EffectKind& sut = effect_kind("free_form");
@@ -203,10 +202,7 @@ TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
 
 // The report draws it, with the errors of the numbers that were fitted.
 TEST(FreeFormTest, TheCurveNamesTheNumbersThatWereFitted) {
-  const Signals signals(made::measurement_of({{"u", "m/s^2", made::white(50, 5)},
-                                              {"theta", "rad", made::white(50, 7)},
-                                              {"y", "N", made::white(50, 6)}}),
-                        {"u"}, "y");
+  const Signals signals = signals_over(made::white(50, 7));
   const auto force = effect_kind("free_form").curve(three_knots(), signals);
   ASSERT_TRUE(force);
   EXPECT_EQ(force->over, "theta");

@@ -9,16 +9,10 @@
 
 namespace stillhand::diagnosis::impulse_response_test {
 
+using made::signals_of;
+using made::sum_of;
+
 constexpr std::size_t kCount = 12000;
-
-Signals signals_of(const std::vector<double>& u, const std::vector<double>& y) {
-  return {made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y"};
-}
-
-std::vector<double> sum_of(std::vector<double> left, const std::vector<double>& right) {
-  for (std::size_t n = 0; n < left.size(); ++n) left[n] += right[n];
-  return left;
-}
 
 // y(n) = 0.5 + sum h_i u(n-i), 20 taps that die away.
 std::vector<double> finite_response(const std::vector<double>& u) {

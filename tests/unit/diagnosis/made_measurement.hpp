@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -15,6 +17,7 @@
 #include "services/core/diagnosis/model/model.hpp"
 #include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/signal/butterworth.hpp"
+#include "services/core/signal/moments.hpp"
 #include "services/core/signal/random.hpp"
 
 /// Measurements whose making is known to the last number: difference equations written out, seeded
@@ -31,10 +34,15 @@ inline std::vector<double> white(std::size_t count, std::uint64_t seed) {
   return x;
 }
 
-inline double rms_of(const std::vector<double>& x) {
-  double square = 0.0;
-  for (const double value : x) square += value * value;
-  return std::sqrt(square / static_cast<double>(x.size()));
+inline double rms_of(const std::vector<double>& x) { return signal::rms(x); }
+
+inline std::vector<double> sum_of(std::vector<double> left, const std::vector<double>& right) {
+  for (std::size_t n = 0; n < left.size(); ++n) left[n] += right[n];
+  return left;
+}
+
+inline Eigen::VectorXd column_of(const std::vector<double>& x) {
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
 }
 
 inline std::vector<double> scaled_to(std::vector<double> x, double rms) {
@@ -63,6 +71,10 @@ inline Measurement measurement_of(std::vector<Channel> channels, double rate_hz 
   return made;
 }
 
+inline Signals signals_of(const std::vector<double>& u, const std::vector<double>& y) {
+  return {measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y"};
+}
+
 /// Cuts it in two stretches, the second one beginning `pause_s` late.
 inline Measurement cut_in_two(Measurement measurement, std::size_t at, double pause_s) {
   measurement.stretches = {
@@ -80,6 +92,10 @@ inline std::vector<double> answer(const std::vector<double>& b, const std::vecto
     for (std::size_t j = 1; j < a.size() && j <= n; ++j) y[n] -= a[j] * y[n - j];
   }
   return y;
+}
+
+inline std::vector<double> answer(const Body& body, const std::vector<double>& u) {
+  return answer(body.numerators[0], body.denominator, u);
 }
 
 /// Before a stretch, Eq. DG-54: the mean m of the first second and its swing s.

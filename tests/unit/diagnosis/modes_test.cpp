@@ -45,12 +45,12 @@ TEST(ModesTest, RestAndModeTogetherAreTheBody) {
   const auto splits = split_modes(body, made::kRateHz);
   ASSERT_EQ(splits.size(), 3U);
   const std::vector<double> u = made::white(kCount, 1);
-  const auto whole = made::answer(body.numerators[0], body.denominator, u);
+  const auto whole = made::answer(body, u);
   double frequencies_hz = 0.0;
   for (const SplitBody& split : splits) {
     frequencies_hz += split.frequency_hz;
     ASSERT_EQ(split.rest.order(), 4U);
-    const auto rest = made::answer(split.rest.numerators[0], split.rest.denominator, u);
+    const auto rest = made::answer(split.rest, u);
     const auto mode =
         made::answer({split.mode[0][0], split.mode[0][1]},
                      mode_denominator(split.frequency_hz, split.damping_ratio, made::kRateHz), u);

@@ -24,11 +24,9 @@ struct Moved {
     return made::measurement_of({{"u", "V", u}, {"y", "N", y}});
   }
   [[nodiscard]] static Eigen::MatrixXd columns() {
-    const auto u = made::ride(kCount, 1);
-    const auto w = made::white(kCount, 3);
     Eigen::MatrixXd all(static_cast<Eigen::Index>(kCount), 3);
-    all.col(0) = Eigen::Map<const Eigen::VectorXd>(u.data(), all.rows());
-    all.col(1) = Eigen::Map<const Eigen::VectorXd>(w.data(), all.rows());
+    all.col(0) = made::column_of(made::ride(kCount, 1));
+    all.col(1) = made::column_of(made::white(kCount, 3));
     all.col(2) = all.col(0) + all.col(1);
     return all;
   }

@@ -20,7 +20,7 @@ const std::vector<std::size_t> kHarmonics{5, 11, 15, 23, 31, 37, 45, 55};
 // Body on u and noise of 0.05.
 Measurement made_with(const std::vector<double>& u, const std::vector<double>& noise) {
   const Body body = made::two_pole_body();
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   const auto settled = made::scaled_to(noise, 0.05);
   for (std::size_t n = 0; n < kCount; ++n) y[n] += settled[n];
   return made::measurement_of({{"u", "V", u}, {"y", "N", y}});

@@ -69,10 +69,10 @@ inline void expect_proposed(const Planted& planted) {
 }
 
 /// y with noise of 1 % of its RMS, as the last channel behind u and the others.
-inline Planted planted_in(std::vector<double> y, const std::vector<double>& u,
+inline Planted planted_in(const char* kind, const char* form, std::vector<double> y,
+                          const std::vector<double>& u, std::vector<std::string> channels = {},
                           std::vector<Channel> others = {}) {
-  Planted planted;
-  planted.noise = 0.01 * rms_of(y);
+  Planted planted{kind, form, std::move(channels), {}, 0.01 * rms_of(y)};
   const auto noise = white(y.size(), 77);
   for (std::size_t n = 0; n < y.size(); ++n) y[n] += planted.noise * noise[n];
   others.insert(others.begin(), {"u", "V", u});

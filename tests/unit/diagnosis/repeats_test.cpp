@@ -10,11 +10,9 @@
 
 namespace stillhand::diagnosis::repeats_test {
 
-constexpr std::size_t kPeriod = 250;
+using made::column_of;
 
-Eigen::VectorXd vector_of(const std::vector<double>& x) {
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-}
+constexpr std::size_t kPeriod = 250;
 
 // Noise and something that repeats and is far larger.
 std::vector<double> repeating(const std::vector<double>& noise) {
@@ -27,7 +25,7 @@ std::vector<double> repeating(const std::vector<double>& noise) {
 
 Repeats repeats_in(const std::vector<double>& residual, std::size_t periods) {
   const std::vector<double> all(residual.size(), 1.0);
-  const auto result = repeated_residual({0, kPeriod, periods, 0.0}, vector_of(residual), all);
+  const auto result = repeated_residual({0, kPeriod, periods, 0.0}, column_of(residual), all);
   return result ? result->repeats : Repeats{};
 }
 
@@ -102,11 +100,11 @@ TEST(RepeatsTest, SamplesThatDoNotCountAreLeftOut) {
     r[n] = 0.0;
   }
   const Periodicity all{0, kPeriod, 6, 0.0};
-  const auto sut = repeated_residual(all, vector_of(r), weight);
+  const auto sut = repeated_residual(all, column_of(r), weight);
   ASSERT_TRUE(sut.has_value());
   EXPECT_NEAR(sut->repeats.rms, 1.0, 0.09);
   for (std::size_t n = 0; n < r.size(); n += 8) weight[n] = 0.0;
-  EXPECT_FALSE(repeated_residual(all, vector_of(r), weight).has_value());
+  EXPECT_FALSE(repeated_residual(all, column_of(r), weight).has_value());
 }
 
 TEST(RepeatsTest, WhatRepeatsExactlyHasNoNoise) {

@@ -126,7 +126,7 @@ TEST(SearchTest, OfTwoThatExplainAsMuchTheSimplerIsAdded) {
     const double t = static_cast<double>(n) / kCount;
     y[n] = 0.1 * y[n] + 2.0 * u[n] + 0.5 * t + 0.03 * std::cos(2.0 * std::numbers::pi * t);
   }
-  const Signals signals(made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y");
+  const Signals signals = made::signals_of(u, y);
   const Blocks blocks = make_blocks(signals);
   SearchOptions options;
   options.most_effects = 1;

@@ -70,9 +70,7 @@ class ShapeExchangeTest : public ::testing::Test {
   Effect bent_{"nonlinear_stiffness", "bent inside the body", {}, {}, {}};
   Effect slopes_{"asymmetry", "slopes inside the body", {}, {}, {}};
   Effect cubic_{"nonlinear_stiffness", "cubic inside the body", {}, {}, {}};
-  double size_ =
-      made::rms_of(made::answer(made::two_pole_body().numerators[0],
-                                made::two_pole_body().denominator, made::ride(kCount, 1)));
+  double size_ = made::rms_of(made::answer(made::two_pole_body(), made::ride(kCount, 1)));
 };
 
 TEST_F(ShapeExchangeTest, TheSameShapeIsTheSameModel) {

@@ -12,11 +12,9 @@
 
 namespace stillhand::diagnosis::share_test {
 
-constexpr std::size_t kCount = 6000;
+using made::column_of;
 
-Eigen::VectorXd vector_of(const std::vector<double>& x) {
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
-}
+constexpr std::size_t kCount = 6000;
 
 Blocks thirds() {
   Blocks blocks{200, kCount / 200, 3, {}};
@@ -27,8 +25,8 @@ Blocks thirds() {
 // Variance of least squares of 0.6 d on d under white noise of 1: 1/sqrt(6000) of the standard
 // deviation of d, which is 1: 0.013.  Three of them.
 TEST(ShareTest, IsWhatTheResidualHoldsOfTheDifference) {
-  const Eigen::VectorXd d = vector_of(made::white(kCount, 1));
-  const Share sut = share_of(0.6 * d + vector_of(made::white(kCount, 2)), d, thirds());
+  const Eigen::VectorXd d = column_of(made::white(kCount, 1));
+  const Share sut = share_of(0.6 * d + column_of(made::white(kCount, 2)), d, thirds());
   EXPECT_NEAR(sut.estimate, 0.6, 0.04);
   // Over three parts the standard error itself is uncertain by a factor of two.
   EXPECT_GT(sut.std_error, 0.005);
@@ -36,7 +34,7 @@ TEST(ShareTest, IsWhatTheResidualHoldsOfTheDifference) {
 }
 
 TEST(ShareTest, WhatOnePartContradictsIsUncertain) {
-  const Eigen::VectorXd d = vector_of(made::white(kCount, 1));
+  const Eigen::VectorXd d = column_of(made::white(kCount, 1));
   Eigen::VectorXd residual = d;
   residual.head(kCount / 3) *= -1.0;
   const Share sut = share_of(residual, d, thirds());
@@ -49,8 +47,8 @@ TEST(ShareTest, WhatOnePartContradictsIsUncertain) {
 // Two parts of three are ten times as large and want all of it; the third wants none, and its error
 // is 1 where the effect adds 1: |1 - s|^2 + .. = 1 + s^2 <= 1.05^2 for s = sqrt(0.1025) = 0.32.
 TEST(ShareTest, NoPartIsMadeWorseByMoreThanATwentieth) {
-  const Eigen::VectorXd d = vector_of(made::white(kCount, 1));
-  const Eigen::VectorXd noise = vector_of(made::white(kCount, 2));
+  const Eigen::VectorXd d = column_of(made::white(kCount, 1));
+  const Eigen::VectorXd noise = column_of(made::white(kCount, 2));
   constexpr Eigen::Index kThird = kCount / 3;
   Eigen::VectorXd difference = 10.0 * d;
   Eigen::VectorXd residual = difference + noise;
@@ -65,7 +63,7 @@ TEST(ShareTest, NoPartIsMadeWorseByMoreThanATwentieth) {
 
 TEST(ShareTest, OfNoDifferenceNothingIsEarned) {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(kCount);
-  EXPECT_EQ(share_of(vector_of(made::white(kCount, 2)), none, thirds()).earned(), 0.0);
+  EXPECT_EQ(share_of(column_of(made::white(kCount, 2)), none, thirds()).earned(), 0.0);
 }
 
 TEST(ShareTest, TheStandardErrorTakesItsSquareOfTheEstimate) {

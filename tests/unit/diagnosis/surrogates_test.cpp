@@ -10,12 +10,10 @@
 
 namespace stillhand::diagnosis::surrogates_test {
 
+using made::column_of;
+
 constexpr std::size_t kCount = 6000;
 constexpr std::size_t kFew = 8;
-
-Eigen::VectorXd vector_of(const std::vector<double>& x) {
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
-}
 
 double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a.dot(b) / (a.norm() * b.norm());
@@ -28,7 +26,7 @@ double of_neighbours(const Eigen::VectorXd& x) {
 
 TEST(SurrogatesTest, EachHasThePowerAndTheColourAndIsAnotherNoise) {
   const Eigen::VectorXd residual =
-      vector_of(made::answer({1.0}, {1.0, -0.8}, made::white(kCount, 1)));
+      column_of(made::answer({1.0}, {1.0, -0.8}, made::white(kCount, 1)));
   const Eigen::MatrixXd sut = surrogates(residual, std::vector<double>(kCount, 1.0), kFew);
   ASSERT_EQ(sut.cols(), static_cast<Eigen::Index>(kFew));
   for (Eigen::Index i = 0; i < sut.cols(); ++i) {
@@ -47,7 +45,7 @@ TEST(SurrogatesTest, EachHasThePowerAndTheColourAndIsAnotherNoise) {
 TEST(SurrogatesTest, WhatIsMovedInTimeKeepsItsBursts) {
   std::vector<double> burst = made::white(kCount, 2);
   for (std::size_t n = 0; n < 50; ++n) burst[n + 1000] *= 30.0;
-  const Eigen::VectorXd residual = vector_of(burst);
+  const Eigen::VectorXd residual = column_of(burst);
   const Eigen::MatrixXd sut = surrogates(residual, std::vector<double>(kCount, 1.0), kFew);
   for (Eigen::Index i = 0; i < sut.cols(); ++i) {
     const double largest = sut.col(i).cwiseAbs().maxCoeff();
@@ -63,7 +61,7 @@ TEST(SurrogatesTest, WhatIsMovedInTimeKeepsItsBursts) {
 TEST(SurrogatesTest, SamplesThatWeighNothingStayZero) {
   std::vector<double> weight(kCount, 1.0);
   std::fill_n(weight.begin() + 100, 500, 0.0);
-  Eigen::VectorXd residual = vector_of(made::white(kCount, 3));
+  Eigen::VectorXd residual = column_of(made::white(kCount, 3));
   residual.segment(100, 500).setZero();
   const Eigen::MatrixXd sut = surrogates(residual, weight, kFew);
   EXPECT_EQ(sut.middleRows(100, 500).cwiseAbs().maxCoeff(), 0.0);

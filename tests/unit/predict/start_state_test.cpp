@@ -31,7 +31,7 @@ diagnosis::Body slow_body() { return {{{0.0, 0.05}}, {1.0, -std::exp(-0.01 / 50.
 // The end of an answer from rest.
 Measurement begun(const diagnosis::Body& body) {
   const auto u = made::white(kBefore + 600, 7);
-  auto y = made::answer(body.numerators[0], body.denominator, u);
+  auto y = made::answer(body, u);
   for (double& value : y) value += body.offset;
   const auto end_of = [](const std::vector<double>& x) {
     return std::vector<double>(x.begin() + kBefore, x.end());
@@ -81,7 +81,7 @@ TEST(StartStateTest, EveryStretchHasItsOwn) {
 TEST(StartStateTest, AModeNextToTheBodyGoesOnFromThereToo) {
   const std::vector<double> mode = diagnosis::mode_denominator(12.0, 0.005, 100.0);
   const auto u = made::white(kBefore + 600, 9);
-  auto y = made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, u);
+  auto y = made::answer(made::two_pole_body(), u);
   const auto ringing = made::answer({0.02}, mode, u);
   for (std::size_t n = 0; n < y.size(); ++n) y[n] += ringing[n];
   const auto end_of = [](const std::vector<double>& x) {
@@ -110,7 +110,7 @@ TEST(StartStateTest, BehindASizeTheSignOfTheStateIsFound) {
   diagnosis::Body slow = made::two_pole_body();
   slow.denominator = diagnosis::mode_denominator(1.0, 0.1, 100.0);
   const auto u = made::white(2000, 7);
-  auto y = made::answer(slow.numerators[0], slow.denominator, u);
+  auto y = made::answer(slow, u);
   for (double& value : y) value = std::abs(value);
   Model model = made::model_of(slow, {{"asymmetry", "size at the output", {}, {}, {}}});
   model.heldout_rmse = kNoise;
