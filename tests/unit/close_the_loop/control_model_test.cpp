@@ -15,6 +15,7 @@
 #include "services/core/diagnosis/model/modes.hpp"
 #include "services/core/population/population.hpp"
 #include "tests/support/feedthrough_records.hpp"
+#include "tests/support/rms_share.hpp"
 
 namespace stillhand::close_the_loop::control_model_test {
 namespace {
@@ -73,8 +74,6 @@ double difference(const diagnosis::Model& model, const cancellation::ControlMode
   const std::vector<double> expected = diagnosis::free_run(model, motion.signals()).prediction;
   cancellation::ControlModelFilter filter(control, 1);
   const auto shift = static_cast<std::size_t>(std::lround(late_s * 1000.0));
-  double square = 0.0;
-  double all = 0.0;
   std::vector<double> got;
   for (std::size_t n = 0; n < motion.a_y.size(); ++n) {
     cancellation::ChannelSample sample{};
@@ -83,12 +82,11 @@ double difference(const diagnosis::Model& model, const cancellation::ControlMode
     const auto force = filter.step(sample, static_cast<Tick>(n));
     got.push_back(force.feedthrough_n + force.beside_n);
   }
+  support::RmsShare missed;
   for (std::size_t n = 500; n + 10 < expected.size(); ++n) {
-    const double error = got[n * kSlow - shift] - expected[n];
-    square += error * error;
-    all += expected[n] * expected[n];
+    missed.add(got[n * kSlow - shift] - expected[n], expected[n]);
   }
-  return std::sqrt(square / all);
+  return missed.value();
 }
 
 TEST(ControlModelTest, ALinearBodyGivesTheSameForce) {

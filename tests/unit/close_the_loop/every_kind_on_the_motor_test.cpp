@@ -19,6 +19,7 @@
 #include "services/core/diagnosis/model/seen_range.hpp"
 #include "services/files/cancellation/control_model_file.hpp"
 #include "services/files/diagnosis/model_file.hpp"
+#include "tests/support/rms_share.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::close_the_loop::every_kind_on_the_motor_test {
@@ -80,13 +81,9 @@ Effect drawn(Effect effect, double force_n, signal::Gaussian& draw) {
 
 double difference(const std::vector<double>& got, const std::vector<double>& want,
                   std::size_t from) {
-  double miss = 0.0;
-  double size = 0.0;
-  for (std::size_t n = from; n < want.size(); ++n) {
-    miss += std::pow(got[n] - want[n], 2);
-    size += std::pow(want[n], 2);
-  }
-  return std::sqrt(miss / size);
+  support::RmsShare missed;
+  for (std::size_t n = from; n < want.size(); ++n) missed.add(got[n] - want[n], want[n]);
+  return missed.value();
 }
 
 // What the canceller predicts of a motion, tick by tick, at the signals' instants; each 10 ticks.

@@ -11,6 +11,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/record/measurement.hpp"
 #include "services/core/signal/butterworth.hpp"
+#include "services/core/signal/moments.hpp"
 #include "services/core/signal/random.hpp"
 
 /// Recordings whose truth is known.
@@ -24,9 +25,8 @@ inline std::vector<double> smooth_noise(double duration_s, double cutoff_hz, std
   std::vector<double> x(static_cast<std::size_t>(duration_s * kRate_hz));
   for (double& value : x) value = gaussian();
   x = signal::filtered(signal::Butterworth(4, cutoff_hz, kRate_hz), x);
-  double square = 0.0;
-  for (const double value : x) square += value * value;
-  for (double& value : x) value /= std::sqrt(square / static_cast<double>(x.size()));
+  const double rms = signal::rms(x);
+  for (double& value : x) value /= rms;
   return x;
 }
 

@@ -7,6 +7,7 @@
 
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "tests/support/rms_share.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis::shape_exchange_test {
@@ -54,13 +55,9 @@ class ShapeExchangeTest : public ::testing::Test {
     const auto a = run(sut);
     const auto b = run(of);
     const auto without = run(linear);
-    double square = 0.0;
-    double reference = 0.0;
-    for (std::size_t n = 0; n < a.size(); ++n) {
-      square += std::pow(a[n] - b[n], 2);
-      reference += std::pow(b[n] - without[n], 2);
-    }
-    return std::sqrt(square / reference);
+    support::RmsShare share;
+    for (std::size_t n = 0; n < a.size(); ++n) share.add(a[n] - b[n], b[n] - without[n]);
+    return share.value();
   }
 
   Measurement measurement_;

@@ -8,6 +8,7 @@
 
 #include "services/core/contract/tick.hpp"
 #include "services/core/human_operator/crossover_operator.hpp"
+#include "services/core/signal/moments.hpp"
 #include "services/core/signal/reference.hpp"
 #include "services/core/signal/spectrum.hpp"
 
@@ -53,11 +54,7 @@ struct TrackingRun {
   signal::ReferenceDesign design;
   std::vector<double> target_m, cursor_m, error_m, force_n, crossover_hz;
 
-  [[nodiscard]] double error_rms_m() const {
-    double sum = 0.0;
-    for (const double e : error_m) sum += e * e;
-    return std::sqrt(sum / static_cast<double>(error_m.size()));
-  }
+  [[nodiscard]] double error_rms_m() const { return signal::rms(error_m); }
   [[nodiscard]] double dwell() const {
     std::size_t inside = 0;
     for (const double e : error_m) inside += std::abs(e) < 0.015 ? 1 : 0;

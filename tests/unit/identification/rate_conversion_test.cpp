@@ -10,6 +10,7 @@
 #include "services/core/contract/tick.hpp"
 #include "services/core/rig/parts/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
+#include "tests/support/rms_share.hpp"
 
 namespace stillhand::identification::rate_conversion_test {
 namespace {
@@ -114,13 +115,9 @@ class HoldCostTest : public ::testing::Test {
     f_ = signal::simulated(converted_, a_);
   }
   [[nodiscard]] double share(const std::vector<double>& predicted) const {
-    double error = 0.0;
-    double power = 0.0;
-    for (std::size_t n = 2000; n < f_.size(); ++n) {
-      error += std::pow(f_[n] - predicted[n], 2);
-      power += f_[n] * f_[n];
-    }
-    return std::sqrt(error / power);
+    support::RmsShare left;
+    for (std::size_t n = 2000; n < f_.size(); ++n) left.add(f_[n] - predicted[n], f_[n]);
+    return left.value();
   }
   // The 50 Hz model on every twentieth sample, its answer held for twenty ticks.
   [[nodiscard]] std::vector<double> held() const {
@@ -151,13 +148,9 @@ TEST_F(HoldCostTest, ConvertedFilterLeavesNoneOfThat) {
   std::vector<double> sampled;
   for (std::size_t n = 0; n < a_.size(); n += 20) sampled.push_back(a_[n]);
   const auto low = signal::simulated(body_like_model(), sampled);
-  double error = 0.0;
-  double power = 0.0;
-  for (std::size_t n = 100; n < low.size(); ++n) {
-    error += std::pow(low[n] - f_[20 * n], 2);
-    power += low[n] * low[n];
-  }
-  const double left = std::sqrt(error / power);
+  support::RmsShare share_left;
+  for (std::size_t n = 100; n < low.size(); ++n) share_left.add(low[n] - f_[20 * n], low[n]);
+  const double left = share_left.value();
   std::printf("residual share at 1 kHz: converted filter %.3f %%\n", 100.0 * left);
   EXPECT_LT(left, to_control_rate(body_like_model()).excited_error * 3.0);
   EXPECT_LT(left, share(held()) / 20.0);

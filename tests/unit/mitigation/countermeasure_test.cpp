@@ -13,6 +13,7 @@
 
 #include "services/core/admittance/arm_fit.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/rms_share.hpp"
 
 namespace stillhand::cancellation::countermeasure_test {
 
@@ -164,9 +165,7 @@ Left left_of(const Recipe& recipe, const admittance::ArmValues& plant) {
   Countermeasure sut({}, recipe);
   LinearArm with(plant, {});
   LinearArm without(plant, {});
-  double moved = 0.0;
-  double commanded = 0.0;
-  double alone = 0.0;
+  support::RmsShare moved, commanded;
   double last_m = 0.0;
   for (Tick n = 1; n <= 80'000; ++n) {
     const double a = motion_at(n);
@@ -177,11 +176,10 @@ Left left_of(const Recipe& recipe, const admittance::ArmValues& plant) {
     with.step(a, out.force_n);
     const double x0 = without.step(a, 0.0).displacement_m;
     if (n < 60'000) continue;
-    moved += x * x;
-    commanded += std::pow(kLever_m * out.command_rad, 2);
-    alone += x0 * x0;
+    moved.add(x, x0);
+    commanded.add(kLever_m * out.command_rad, x0);
   }
-  return {std::sqrt(moved / alone), std::sqrt(commanded / alone)};
+  return {moved.value(), commanded.value()};
 }
 
 // The plant is one of the two arms of the schedule.

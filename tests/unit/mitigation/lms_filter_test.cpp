@@ -10,6 +10,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/signal/second_order_lag.hpp"
+#include "tests/support/rms_share.hpp"
 
 namespace stillhand::cancellation::lms_filter_test {
 
@@ -50,18 +51,15 @@ TEST(LmsFilterTest, TakesAKnownPlantsMotionOffTheCommand) {
   LmsFilter sut({.step = 0.05});
   const Motion motion(1);
   Hand hand;
-  double left = 0.0;
-  double all = 0.0;
+  support::RmsShare left;
   for (int n = 0; n < kTicks; ++n) {
     const double a = motion.at(n);
     const double x = hand.step(kFeedthrough_n_s2_m * a);
     const double y = sut.output(a);
     sut.learn(x - y, true);
-    if (n < kTicks - kLast) continue;
-    left += (x - y) * (x - y);
-    all += x * x;
+    if (n >= kTicks - kLast) left.add(x - y, x);
   }
-  EXPECT_LT(std::sqrt(left / all), 0.05);
+  EXPECT_LT(left.value(), 0.05);
 }
 
 // The same by a force, with a path of 20 % more stiffness and less damping than the hand's.
@@ -71,18 +69,15 @@ TEST(LmsFilterTest, StillsAKnownPlantByAForce) {
   const Motion motion(2);
   Hand with;
   Hand without;
-  double left = 0.0;
-  double all = 0.0;
+  support::RmsShare left;
   for (int n = 0; n < kTicks; ++n) {
     const double a = motion.at(n);
     const double x = with.step(kFeedthrough_n_s2_m * a - sut.output(a));
     sut.learn(x, true);
     const double x0 = without.step(kFeedthrough_n_s2_m * a);
-    if (n < kTicks - kLast) continue;
-    left += x * x;
-    all += x0 * x0;
+    if (n >= kTicks - kLast) left.add(x, x0);
   }
-  EXPECT_LT(std::sqrt(left / all), 0.10);
+  EXPECT_LT(left.value(), 0.10);
 }
 
 // A tense hand whose reflex lets it resonate at 3.5 Hz, 9 times the average compliance there; above
@@ -94,18 +89,15 @@ TEST(LmsFilterTest, AHandThatResonatesAboveTheMotionIsNotDrivenByTheForce) {
   const Motion motion(4);
   signal::SecondOrderLag with(kTurn * 3.5, 0.05, 1e-3);
   signal::SecondOrderLag without = with;
-  double left = 0.0;
-  double all = 0.0;
+  support::RmsShare left;
   for (int n = 0; n < 2 * kTicks; ++n) {
     const double a = motion.at(n) + 0.02 * std::sin(kTurn * 4.0 * 1e-3 * n);
     const double x = with.step((kFeedthrough_n_s2_m * a - sut.output(a)) / 811.0).x;
     sut.learn(x, true);
     const double x0 = without.step(kFeedthrough_n_s2_m * a / 811.0).x;
-    if (n < 2 * kTicks - kLast) continue;
-    left += x * x;
-    all += x0 * x0;
+    if (n >= 2 * kTicks - kLast) left.add(x, x0);
   }
-  EXPECT_LT(std::sqrt(left / all), 0.3);
+  EXPECT_LT(left.value(), 0.3);
 }
 
 // Motion that the acceleration does not explain moves the weights about, and no further: with
@@ -114,19 +106,16 @@ TEST(LmsFilterTest, WantedMotionAveragesOut) {
   LmsFilter sut({.step = 0.005});
   const Motion motion(3);
   Hand hand;
-  double left = 0.0;
-  double all = 0.0;
+  support::RmsShare left;
   for (int n = 0; n < 3 * kTicks; ++n) {
     const double a = motion.at(n);
     const double x = hand.step(kFeedthrough_n_s2_m * a);
     const double wanted = 0.006 * std::sin(kTurn * 0.31 * 1e-3 * n);
     const double y = sut.output(a);
     sut.learn(x + wanted - y, true);
-    if (n < 3 * kTicks - kLast) continue;
-    left += (x - y) * (x - y);
-    all += x * x;
+    if (n >= 3 * kTicks - kLast) left.add(x - y, x);
   }
-  EXPECT_LT(std::sqrt(left / all), 0.15);
+  EXPECT_LT(left.value(), 0.15);
 }
 
 TEST(LmsFilterTest, LearnsNothingWhileItMayNotOrWhileThePlatformStandsStill) {

@@ -10,6 +10,7 @@
 
 #include "services/core/admittance/arm_fit.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/rms_share.hpp"
 
 namespace stillhand::cancellation::scheduled_force_test {
 
@@ -43,8 +44,7 @@ Ran ran(const admittance::ArmValues& truth, bool cancels, double wanted_m,
   ScheduledForce sut(config);
   LinearArm arm(truth, {});
   double motor_n = 0.0;
-  double left = 0.0;
-  double all = 0.0;
+  support::RmsShare left;
   ArmPrediction now{};
   for (int n = 0; n < 60'000; ++n) {
     const double a = motion_at(n);
@@ -55,11 +55,9 @@ Ran ran(const admittance::ArmValues& truth, bool cancels, double wanted_m,
     const double predicted_n = sut.step(a, x / 0.10, motor_n);
     motor_n = cancels ? -predicted_n : 0.0;
     arm.step(a, motor_n);
-    if (n < 40'000) continue;
-    left += std::pow(predicted_n - now.held_n, 2);
-    all += std::pow(now.held_n, 2);
+    if (n >= 40'000) left.add(predicted_n - now.held_n, now.held_n);
   }
-  return {sut.weight(), std::sqrt(left / all)};
+  return {sut.weight(), left.value()};
 }
 
 TEST(ScheduledForceTest, FindsEitherArm) {

@@ -11,17 +11,14 @@
 #include "services/core/contract/tick.hpp"
 #include "services/core/contract/units.hpp"
 #include "services/core/rig/rig.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::rig::neuromuscular_test {
 namespace {
 
-constexpr int kSecond = 1000;
+using signal::rms;
 
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
+constexpr int kSecond = 1000;
 
 // 2 m/s^2 RMS at 1 Hz.
 double shaking_m_s2(int n) {

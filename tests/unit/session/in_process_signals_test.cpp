@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/libraries/session/in_process.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::session::in_process_signals_test {
 namespace {
@@ -181,13 +182,8 @@ TEST(InProcessSignalsTest, AStillPlatformFeedsAlmostNothingThrough) {
   CoreConfigs linear;
   linear.rig.body.neuromuscular = {};
   InProcessLoop sut(linear, 11);
-  const auto rms = [](const std::vector<double>& x) {
-    double sum = 0.0;
-    for (const double value : x) sum += value * value;
-    return std::sqrt(sum / static_cast<double>(x.size()));
-  };
-  const double still_n = rms(sut.run(planned("A", 11)).feedthrough_n);
-  const double moving_n = rms(sut.run(planned("B", 11)).feedthrough_n);
+  const double still_n = signal::rms(sut.run(planned("A", 11)).feedthrough_n);
+  const double moving_n = signal::rms(sut.run(planned("B", 11)).feedthrough_n);
   EXPECT_GT(moving_n, 2.0);
   EXPECT_LT(still_n, 0.01 * moving_n);
 }

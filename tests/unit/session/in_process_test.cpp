@@ -9,18 +9,15 @@
 #include <map>
 #include <numbers>
 
+#include "services/core/signal/moments.hpp"
 #include "services/core/signal/reference.hpp"
 
 namespace stillhand::session::in_process_test {
 namespace {
 
-constexpr double kTrial_s = 60.0;
+using signal::rms;
 
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
+constexpr double kTrial_s = 60.0;
 
 struct Session {
   std::map<Condition, identification::TrackingMetrics> metrics;

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/rms_share.hpp"
 #include "tests/unit/session/recorded_session.hpp"
 
 namespace stillhand::session::results_test {
@@ -348,17 +349,15 @@ TEST(EvaluateTest, TheCostOfAHoldIsTheErrorOfTheHeldFiftyHertzModel) {
   for (Tick tick = kStart; tick < kEnd; ++tick) tape.sensed(tick, acceleration_m_s2(tick));
   tape.file.add(topics::kFeedthroughModel, static_model(-3.2, true));
   const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
-  double left = 0.0;
-  double all = 0.0;
+  support::RmsShare left;
   for (Tick n = 2000; n < kTrial_ticks; ++n) {
     const double now = acceleration_m_s2(kStart + n);
     const double held = acceleration_m_s2(kStart + n / 20 * 20);
-    left += (now - held) * (now - held);
-    all += now * now;
+    left.add(now - held, now);
   }
   ASSERT_TRUE(sut.conversion.has_value());
   EXPECT_NEAR(sut.conversion->control_filter, 0.0, 1e-12);
-  EXPECT_NEAR(sut.conversion->zero_order_hold, std::sqrt(left / all), 1e-12);
+  EXPECT_NEAR(sut.conversion->zero_order_hold, left.value(), 1e-12);
 }
 
 TEST(EvaluateTest, TheNewestModelIsTakenAndAnUnusableOneIsNotJudged) {
