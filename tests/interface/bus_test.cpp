@@ -17,6 +17,7 @@
 #include "places.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/bus_options.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/wait.hpp"
 
 namespace stillhand::runtime {
@@ -189,12 +190,8 @@ TEST(BusTest, ADomainOutOfRangeIsTheOperatorsToMend) {
 TEST(BusTest, AMissingProfileFileIsNamed) {
   auto options = support::bus_options("rig");
   options.profiles = "/nowhere/profiles.xml";
-  try {
-    Bus sut(options);
-    FAIL() << "no error";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("/nowhere/profiles.xml"));
-  }
+  EXPECT_THAT(support::refusal([&] { Bus sut(options); }),
+              testing::HasSubstr("/nowhere/profiles.xml"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "places.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/motion_and_rig.hpp"
 #include "tests/support/security_folder.hpp"
 
@@ -25,20 +26,12 @@ class CycloneTest : public testing::Test {
       GTEST_SKIP() << "skipped: built without Cyclone DDS (packages cyclonedds-dev and "
                       "cyclonedds-tools)";
     }
-    std::string name = std::filesystem::temp_directory_path() / "stillhand-cyclone-XXXXXX";
-    const int file = mkstemp(name.data());
-    ASSERT_GE(file, 0);
-    close(file);
-    output_ = name;
-  }
-  void TearDown() override {
-    if (!output_.empty()) std::filesystem::remove(output_);
   }
   std::unique_ptr<support::Child> peer() {
     // As our profiles: loopback alone, and its multicast for discovery; on a secured bus, which
     // hears no multicast, it knocks at the doors of the first participants.
     return std::make_unique<support::Child>(
-        std::vector<std::string>{kPeer, std::to_string(support::own_domain())}, output_,
+        std::vector<std::string>{kPeer, std::to_string(support::own_domain())}, folder_ / "output",
         std::vector<std::string>{
             "CYCLONEDDS_URI=<CycloneDDS><Domain><General><Interfaces>"
             "<NetworkInterface address='127.0.0.1' multicast='true'/></Interfaces>"
@@ -48,7 +41,7 @@ class CycloneTest : public testing::Test {
   }
 
  private:
-  std::filesystem::path output_;
+  const support::Folder folder_;
 };
 
 TEST_F(CycloneTest, ReadsAndWritesOurTopicsValueByValue) {

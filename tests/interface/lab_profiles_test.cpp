@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fstream>
 
 #include "apps/deploy/checks.hpp"
 #include "apps/deploy/generate.hpp"
@@ -20,6 +19,7 @@
 #include "places.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/participant.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
@@ -72,8 +72,7 @@ const char* match_and_send(const OneHost& lab,
 
 // Nobody else is on the domain: a socket at its multicast port is this process's.
 bool listens_to_multicast(const OneHost& lab) {
-  std::ifstream stream("/proc/net/udp");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = support::text_of("/proc/net/udp");
   const DomainPorts ports(lab.inventory.domain);
   return !taken_ports(text, ports.multicast(), ports.multicast()).empty();
 }

@@ -6,21 +6,20 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include "fast_dds/names.hpp"
 #include "places.hpp"
 #include "services/bus/tap.hpp"
-#include "services/core/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/own_domain.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::runtime {
 namespace {
 
 std::string without_profile(const std::string& name) {
-  std::ifstream stream(STILLHAND_SOURCE "/qos/profiles.xml");
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text = support::text_of(STILLHAND_SOURCE "/qos/profiles.xml");
   const std::string named = "profile_name=\"" + name + "\"";
   for (std::size_t at = 0; (at = text.find(named)) != std::string::npos;) {
     text.replace(at, named.size(), "profile_name=\"another\"");
@@ -30,8 +29,8 @@ std::string without_profile(const std::string& name) {
 
 // The listener for others on the bus is destroyed with the tap; DDS must not call it any more.
 TEST(TapTest, RefusedForAProfileItLeavesNoParticipant) {
-  const std::filesystem::path file =
-      std::filesystem::path(testing::TempDir()) / "stillhand_without_record_reliable.xml";
+  const support::Folder folder;
+  const std::filesystem::path file = folder / "without_record_reliable.xml";
   std::ofstream(file) << without_profile("record_reliable");
   Tap::Options options;
   options.name = "test-tap";
@@ -39,14 +38,8 @@ TEST(TapTest, RefusedForAProfileItLeavesNoParticipant) {
   options.profiles = file;
   options.wanted = [](const std::string&) { return true; };
   options.on_sample = [](const FoundWriter&, const TappedSample&) {};
-  std::string refusal;
-  try {
-    const Tap sut(options);
-  } catch (const ConfigError& error) {
-    refusal = error.what();
-  }
-  std::filesystem::remove(file);
-  EXPECT_THAT(refusal, testing::HasSubstr("record_reliable"));
+  EXPECT_THAT(support::refusal([&] { const Tap sut(options); }),
+              testing::HasSubstr("record_reliable"));
   EXPECT_EQ(edds::DomainParticipantFactory::get_instance()->lookup_participant(options.domain),
             nullptr);
 }

@@ -8,11 +8,11 @@
 
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "tests/support/folder.hpp"
 
 namespace stillhand::support {
 
@@ -60,10 +60,7 @@ class Child {
     status_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return status_;
   }
-  [[nodiscard]] std::string output() const {
-    std::ifstream file(output_);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  [[nodiscard]] std::string output() const { return text_of(output_); }
 
  private:
   std::filesystem::path output_;

@@ -4,7 +4,6 @@
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/x509.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +14,7 @@
 #include <string>
 
 #include "places.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::support {
 
@@ -26,13 +26,6 @@ class SecurityFolders {
     static const SecurityFolders folders;
     return folders;
   }
-  ~SecurityFolders() {
-    std::error_code ignored;
-    std::filesystem::remove_all(root_, ignored);
-  }
-  SecurityFolders(const SecurityFolders&) = delete;
-  SecurityFolders& operator=(const SecurityFolders&) = delete;
-
   [[nodiscard]] std::filesystem::path lab() const { return root_ / "lab"; }
   /// Same names throughout, another authority.
   [[nodiscard]] std::filesystem::path other() const { return root_ / "other"; }
@@ -59,13 +52,10 @@ class SecurityFolders {
 
  private:
   SecurityFolders() {
-    std::string name = (std::filesystem::temp_directory_path() / "stillhand-security-XXXXXX");
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    root_ = name;
     make(lab());
     make(other());
   }
-  std::filesystem::path root_;
+  const Folder root_;
 };
 
 /// Puts the certificate in the place of another, good from `from_s` to `to_s` [s] from now, and

@@ -7,13 +7,13 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "apps/deploy/ports.hpp"
 #include "places.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy::profiles_test {
@@ -149,8 +149,7 @@ TEST(LabProfilesTest, MulticastIsLeftToFastDds) {
 }
 
 TEST(LabProfilesTest, PatternsAndLeasesAreThoseOfOneMachine) {
-  std::ifstream stream(kBase);
-  const Read base(std::string{std::istreambuf_iterator<char>(stream), {}});
+  const Read base(support::text_of(kBase));
   ASSERT_GT(base.patterns().size(), 10U);
   for (const std::string discovery : {"peers", "server", "multicast"}) {
     const Read sut(any_host(discovery));

@@ -9,8 +9,6 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -24,17 +22,13 @@
 namespace stillhand::diagnose::diagnosis_report_test {
 
 using report::test::TemporaryFolder;
+using support::text_of;
 using testing::Each;
 using testing::HasSubstr;
 using testing::Not;
 
 constexpr double kFriction_n = -1.0;
 constexpr double kNoise_n = 0.5;
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // Words of a text in small letters.
 std::vector<std::string> words_of(const std::string& text) {

@@ -166,9 +166,7 @@ TEST(DrawTest, RenderWritesTheThreeFilesOfEachFigureAndNothingElse) {
   EXPECT_EQ(folder.entries(), 9U);
   for (std::size_t i = 0; i < figures.size(); ++i) {
     EXPECT_EQ(sut[i].name, figures[i].name);
-    std::ifstream file(folder.path() / (figures[i].name + ".svg"));
-    const std::string written{std::istreambuf_iterator<char>(file), {}};
-    EXPECT_EQ(written, sut[i].svg);
+    EXPECT_EQ(support::text_of(folder / (figures[i].name + ".svg")), sut[i].svg);
   }
 }
 

@@ -121,8 +121,7 @@ TEST(PageTest, WriteLeavesThePageAndNothingElse) {
   const Page sut = full_page();
   sut.write(folder.path() / "report.html");
   EXPECT_EQ(folder.entries(), 1U);
-  std::ifstream file(folder.path() / "report.html");
-  EXPECT_EQ((std::string{std::istreambuf_iterator<char>(file), {}}), sut.html());
+  EXPECT_EQ(support::text_of(folder / "report.html"), sut.html());
 }
 
 TEST(PageTest, AMissingFolderIsNamedInTheError) {
@@ -146,8 +145,7 @@ TEST(PageTest, AWriteThatFailsHalfWayLeavesTheOldPageAndNothingElse) {
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old), 0);
   std::signal(SIGXFSZ, old_action);
   EXPECT_EQ(folder.entries(), 1U);
-  std::ifstream file(path);
-  EXPECT_EQ((std::string{std::istreambuf_iterator<char>(file), {}}), "old");
+  EXPECT_EQ(support::text_of(path), "old");
 }
 
 TEST(TableTest, InATerminalColumnsAreAsWideAsTheirLongestText) {

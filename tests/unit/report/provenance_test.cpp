@@ -12,6 +12,7 @@
 
 #include "apps/libraries/report/command_line.hpp"
 #include "services/files/digest/content_digest.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::report::provenance_test {
@@ -58,12 +59,12 @@ TEST(ProvenanceTest, TheTimeIsUtc) {
 
 // The digest of three bytes, "abc", is FIPS 180-4's own example.
 TEST(ProvenanceTest, ThisCallHasItsSourcesDigestsAndTheDateItIsGiven) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "provenance_abc";
+  const support::Folder folder;
+  const auto path = folder / "abc";
   std::ofstream(path) << "abc";
   ::setenv("SOURCE_DATE_EPOCH", "1000000000", 1);
   const Provenance sut = provenance_of_this_call({path, "/dev/null"});
   ::unsetenv("SOURCE_DATE_EPOCH");
-  std::filesystem::remove(path);
   EXPECT_EQ(sut.date, "2001-09-09T01:46:40Z");
   EXPECT_EQ(sut.sources[0].sha256,
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");

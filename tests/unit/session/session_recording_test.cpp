@@ -4,8 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
+#include "tests/support/folder.hpp"
 #include "tests/support/recorded_file.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/unit/session/recorded_session.hpp"
@@ -148,8 +147,7 @@ TEST(SessionRecordingTest, AFileThatIsNoRecordingIsRefusedByName) {
 }
 
 TEST(SessionRecordingTest, AMissingFileIsRefusedByName) {
-  const std::string path = testing::TempDir() + "no_such_session.mcap";
-  std::filesystem::remove(path);
+  const std::string path = support::Folder() / "no_such_session.mcap";
   EXPECT_THAT(support::refusal<std::exception>([&] { read_session(path); }), HasSubstr(path));
 }
 
