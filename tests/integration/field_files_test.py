@@ -7,15 +7,14 @@ import json
 import pathlib
 import re
 import shlex
-import subprocess
 import sys
 import tempfile
-import unittest
 
 import numpy
 
 import field_files
 import lab_process
+from verb_case import FolderCase, SharedFolderCase, stillhand
 
 # 1 % and 1 degree over the band that the motion has; the least squares of the good file are off by 0.4 %, 0.4 degrees.
 WITHIN_PERCENT, WITHIN_DEG = 1.0, 1.0
@@ -41,8 +40,7 @@ BEFORE = {
 
 def verb(name, path, words, out, effects=0):
     more = ["--most-effects", str(effects)] if name == "diagnose" else []
-    done = subprocess.run([str(lab_process.STILLHAND), name, str(path), *words, *more, "--json", str(out)],
-                          capture_output=True, text=True, timeout=300, check=False)
+    done = stillhand(name, path, *words, *more, "--json", out, timeout=300)
     return done, json.loads(out.read_text()) if done.returncode == 0 else None
 
 
@@ -69,13 +67,7 @@ def says(result, said):
                              *(each["what"] for each in result["screening"])])
 
 
-class FieldFilesTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = pathlib.Path(holder.name)
-
+class FieldFilesTest(SharedFolderCase):
     def each(self, check, wanted=lambda member: True):
         for number, member in enumerate(field_files.MEMBERS):
             if not wanted(member):
@@ -87,7 +79,7 @@ class FieldFilesTest(unittest.TestCase):
                 folder.mkdir(exist_ok=True)
                 check(member, *member.make(folder))
 
-    def refused(self, done, words):
+    def assert_refused(self, done, words):
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         for word in words:
@@ -98,7 +90,7 @@ class FieldFilesTest(unittest.TestCase):
         done, result = verb("identify", path, words, self.folder / "out.json")
         self.assertIsNone(INTERNAL.search(done.stderr), done.stderr)
         if isinstance(right, field_files.Refused):
-            self.refused(done, right.words)
+            self.assert_refused(done, right.words)
             if member.pasted:
                 words = shlex.split(re.search(r"--map .*?(?= \(or)", done.stderr).group())
                 done, result = verb("identify", path, words, self.folder / "pasted.json")
@@ -131,7 +123,7 @@ class FieldFilesTest(unittest.TestCase):
             done, result = verb("diagnose", path, words, self.folder / "out.json",
                                 getattr(member.right, "effects", 0))
             if isinstance(member.right, field_files.Refused):
-                return self.refused(done, ())
+                return self.assert_refused(done, ())
             self.assertEqual(done.returncode, 0, done.stderr)
             good = isinstance(member.right, field_files.Right)
             self.assertEqual(result["verdict"] == "nothing missing", good, result["no_model"])
@@ -141,17 +133,11 @@ class FieldFilesTest(unittest.TestCase):
     def test_predict_names_what_identify_names(self):
         model = self.folder / "model.json"
         good = field_files.text(self.folder)
-        done = subprocess.run([str(lab_process.STILLHAND), "diagnose", str(good), *field_files.MAP, "--most-effects",
-                               "0",
-                               "--save", str(model)], capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.run_verb("diagnose", good, *field_files.MAP, "--most-effects", 0, "--save", model)
 
         def judge(member, path, words):
             out = self.folder / "predicted.json"
-            done = subprocess.run([str(lab_process.STILLHAND), "predict", str(model), str(path), *words, "--out",
-                                   str(self.folder / "predicted.csv"), "--json", str(out)],
-                                  capture_output=True, text=True, check=False)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.run_verb("predict", model, path, *words, "--out", self.folder / "predicted.csv", "--json", out)
             result = json.loads(out.read_text())
             self.assertTrue(says(result, member.right.said), result["screening"])
             if isinstance(member.right, field_files.Right):
@@ -161,30 +147,21 @@ class FieldFilesTest(unittest.TestCase):
         self.each(judge, lambda member: member.kind == "A3" and isinstance(member.right.said, tuple))
 
 
-class ExperimentFolderTest(unittest.TestCase):
+class ExperimentFolderTest(FolderCase):
     """B19."""
 
     def test_what_desktops_and_editors_leave_is_no_change(self):
-        with tempfile.TemporaryDirectory(prefix="stillhand-") as holder:
-            study = pathlib.Path(holder) / "study"
-
-            def status():
-                done = subprocess.run([str(lab_process.STILLHAND), "experiment", "status", str(study)],
-                                      capture_output=True, text=True, check=False)
-                self.assertEqual(done.returncode, 0, done.stderr)
-
-            subprocess.run([str(lab_process.STILLHAND), "experiment", "new", str(study), "--seed", "11"], check=True,
-                           capture_output=True)
-            for name in field_files.LEFT_BY_DESKTOPS:
-                for folder in (study, study / "participants"):
-                    (folder / name).write_bytes(b"\0")
-            status()
-            file = study / "experiment.yaml"
-            whole = file.read_bytes()
-            for changed in (whole.replace(b"\n", b"\r\n"), b"\xef\xbb\xbf" + whole,
-                            b"\xef\xbb\xbf" + whole.replace(b"\n", b"\r\n")):
-                file.write_bytes(changed)
-                status()
+        study = self.folder / "study"
+        self.run_verb("experiment", "new", study, "--seed", 11)
+        for name in field_files.LEFT_BY_DESKTOPS:
+            for folder in (study, study / "participants"):
+                (folder / name).write_bytes(b"\0")
+        file = study / "experiment.yaml"
+        whole = file.read_bytes()
+        for text in (whole, whole.replace(b"\n", b"\r\n"), b"\xef\xbb\xbf" + whole,
+                     b"\xef\xbb\xbf" + whole.replace(b"\n", b"\r\n")):
+            file.write_bytes(text)
+            self.run_verb("experiment", "status", study)
 
 
 def outcome(member):

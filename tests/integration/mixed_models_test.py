@@ -2,16 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """mixed_models.py on tables whose effects are known."""
 import json
-import pathlib
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import numpy
 
 import lab_process
 from lab_process import CTEST_SKIPPED, SOURCE
+from verb_case import FolderCase
 
 SCRIPT = SOURCE / "apps" / "study" / "mixed_models.py"
 HEADER = "participant,session,trial,place,condition,rms error [mm],dwell ratio [-],crossover [Hz]\n"
@@ -36,11 +34,10 @@ def table(people, noise):
     return HEADER + "".join(lines)
 
 
-class MixedModelsTest(unittest.TestCase):
+class MixedModelsTest(FolderCase):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.path = pathlib.Path(holder.name) / "trials.csv"
+        super().setUp()
+        self.path = self.folder / "trials.csv"
 
     def test_the_effects_of_condition_and_learning_are_found_next_to_people_who_differ(self):
         self.path.write_text(table(12, 0.5))

@@ -4,12 +4,10 @@
 With `--campaign` also a ride from a session's recording, and an ISO 8608 road.
 """
 import math
-import pathlib
-import tempfile
-import unittest
 
 import lab_process
 from lab_process import TICKS_PER_S, LabProcess, campaign, loose_settings
+from verb_case import SharedFolderCase
 
 TRAVEL_M = 0.15
 TRIAL_S = 10
@@ -51,12 +49,10 @@ def best_correlation(wanted, followed):
     return max((correlation(wanted[:end:5], followed[lag:end + lag:5]), lag) for lag in range(0, LARGEST_LAG_TICKS, 5))
 
 
-class MotionTest(unittest.TestCase):
+class MotionTest(SharedFolderCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         loose_settings(cls.folder / "config")
 
     @classmethod

@@ -4,23 +4,21 @@ import os
 import signal
 import socket
 import subprocess
-import tempfile
-import unittest
 
 import lab_process
 from lab_process import BUILD, SOURCE, next_domain
+from verb_case import FolderCase
 
 FIRST_LIMIT_S = 20.0
 WATCHDOG_S = 2.0  # apps/deploy/units.cpp
 
 
-class WatchdogTest(unittest.TestCase):
+class WatchdogTest(FolderCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(folder.cleanup)
+        super().setUp()
         self.systemd = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.addCleanup(self.systemd.close)
-        path = os.path.join(folder.name, "notify")
+        path = str(self.folder / "notify")
         self.systemd.bind(path)
         self.service = subprocess.Popen(
             [str(BUILD / "bin" / "stillhand-sensing"), "--domain", str(next_domain()), "--profiles",

@@ -4,20 +4,20 @@
 Installs the npm packages that their lock file names into the build tree. Skipped (status 77) without Node.js, without npm,
 or if npm cannot install the packages. Reads a live session's recording (fixture lab_run) and one file of each compression.
 """
-import csv
 import json
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 
-BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from verb_case import BUILD, STILLHAND, FolderCase, rows  # noqa: E402
+
 SCRIPTS = pathlib.Path(__file__).resolve().parent / "mcap_official_reader"
 INSTALLED = BUILD / "tests" / "mcap_official_reader"
-STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
 WRITE_SAMPLE = BUILD / "tests" / "write_sample_recording"
 RECORDING = pathlib.Path(os.environ.get("STILLHAND_RECORDING", BUILD / "tests" / "lab_run" / "session.mcap"))
 CTEST_SKIPPED = 77
@@ -59,17 +59,7 @@ def node(script, *words):
     return run("node", INSTALLED / script, *words)
 
 
-class OfficialReaderTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def info(self, file):
-        told = run(STILLHAND, "info", file, "--json", self.folder / "info.json")
-        self.assertEqual(told.returncode, 0, told.stderr)
-        return json.loads((self.folder / "info.json").read_text())
-
+class OfficialReaderTest(FolderCase):
     def assert_same_counts(self, file):
         """Their reader by index and as a stream, every checksum validated; ours."""
         theirs = node("read_recording.mjs", file)
@@ -87,8 +77,7 @@ class OfficialReaderTest(unittest.TestCase):
 
     def export(self, file):
         tables = self.folder / "tables"
-        exported = run(STILLHAND, "export", file, "--csv", tables)
-        self.assertEqual((exported.returncode, exported.stderr), (0, ""))
+        self.assertEqual(self.run_verb("export", file, "--csv", tables).stderr, "")
         return tables
 
     def test_every_message_of_a_live_recording_has_the_same_values(self):
@@ -126,8 +115,7 @@ class OfficialReaderTest(unittest.TestCase):
         whole = RECORDING.read_bytes()
         cut, mended = self.folder / "cut.mcap", self.folder / "mended.mcap"
         cut.write_bytes(whole[:len(whole) // 8])
-        recovered = run(STILLHAND, "recover", cut, "--out", mended)
-        self.assertEqual(recovered.returncode, 0, recovered.stderr)
+        self.run_verb("recover", cut, "--out", mended)
         ours, _ = self.assert_same_counts(mended)
         self.assertEqual(ours["messages"], self.info(cut)["messages"])
         compared = node("compare_values.mjs", mended, self.export(mended))
@@ -135,8 +123,7 @@ class OfficialReaderTest(unittest.TestCase):
 
     def test_a_bag_of_ros_2_has_the_values_of_the_recording(self):
         bag = self.folder / "bag.mcap"
-        written = run(STILLHAND, "export", RECORDING, "--ros2bag", bag)
-        self.assertEqual((written.returncode, written.stderr), (0, ""))
+        self.assertEqual(self.run_verb("export", RECORDING, "--ros2bag", bag).stderr, "")
         read = node("read_ros2.mjs", bag)
         self.assertEqual(read.returncode, 0, read.stderr)
         found = json.loads(read.stdout)
@@ -144,10 +131,8 @@ class OfficialReaderTest(unittest.TestCase):
         self.assertEqual({topic["encoding"] for topic in found["topics"].values()}, {"ros2msg"})
         tables = self.export(RECORDING)
 
-        def rows(name):
-            with open(tables / f"{name}.csv", newline="", encoding="utf-8") as file:
-                titles, *rest = csv.reader(file)
-                return [dict(zip((title.split(" [")[0] for title in titles), row)) for row in rest]
+        def samples(name):
+            return [{title.split(" [")[0]: text for title, text in row.items()} for row in rows(tables / f"{name}.csv")]
 
         # REP 103: y is left there, and right here.
         expected = {
@@ -165,7 +150,7 @@ class OfficialReaderTest(unittest.TestCase):
                               lambda r: [0, -r["target_m"], 0]),
         }
         for topic, (table, of_message, of_row) in expected.items():
-            ours, theirs = rows(table), found["topics"][topic]
+            ours, theirs = samples(table), found["topics"][topic]
             self.assertEqual(theirs["messages"], len(ours), topic)
             for sample, row in zip(theirs["samples"], ours[::1000]):
                 numbers = {name: float(text) for name, text in row.items() if name.endswith(("_n", "_m", "_s", "_s2", "_rad"))}

@@ -21,6 +21,7 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests" / "integration"))
 import lab_process  # noqa: E402 (found by the line above)
+from verb_case import SharedFolderCase  # noqa: E402
 
 BUILD = lab_process.BUILD
 CORES = ("signal", "statistics", "admittance_core", "motion_core", "rig_core", "sensing_core", "identification_core", "cancellation_core",
@@ -142,15 +143,14 @@ def why_not_installed():
     return "" if tried.returncode == 0 else f"no overlay of the system to install into: {tried.stderr.strip()}"
 
 
-class ContentTest(unittest.TestCase):
+class ContentTest(SharedFolderCase):
     """What the packages hold, unpacked."""
 
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="stillhand-")
-        cls.addClassCleanup(holder.cleanup)
-        cls.programs = pathlib.Path(holder.name) / "programs"
-        cls.development = pathlib.Path(holder.name) / "development"
+        super().setUpClass()
+        cls.programs = cls.folder / "programs"
+        cls.development = cls.folder / "development"
         subprocess.run(["dpkg-deb", "-x", PACKAGES.programs, cls.programs], check=True)
         subprocess.run(["dpkg-deb", "-x", PACKAGES.development, cls.development], check=True)
 
