@@ -320,20 +320,6 @@ TEST(ForceTest, ForceIsBoundedWhateverComes) {
   }
 }
 
-TEST(ForceTest, IsDeterministic) {
-  const auto a = support::band_noise(5000, 1000.0, 0.7, 2.0, 1.6, 4);
-  Countermeasure first({}, {.force = true});
-  Countermeasure second({}, {.force = true});
-  first.load_model(control_model(body()));
-  second.load_model(control_model(body()));
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    const auto left = first.step(sample(static_cast<Tick>(n), a[n]));
-    const auto right = second.step(sample(static_cast<Tick>(n), a[n]));
-    ASSERT_EQ(left.force_n, right.force_n);
-    ASSERT_EQ(left.flags, right.flags);
-  }
-}
-
 TEST(ForceTest, SettingsOutsideTheirRangeAreRefused) {
   Config config;
   config.gain = 1.3;

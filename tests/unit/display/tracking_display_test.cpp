@@ -171,15 +171,6 @@ TEST(TrackingDisplayTest, TheBoxStaysOnTheScreenAndUsesMuchOfIt) {
   EXPECT_LT(redrawn, 30);
 }
 
-TEST(TrackingDisplayTest, TheSameSeedGivesTheSameTarget) {
-  const TrackingDisplay::Config config;
-  const auto first = reference_on_screen(config, kDuration, 9);
-  const auto same = reference_on_screen(config, kDuration, 9);
-  const auto other = reference_on_screen(config, kDuration, 10);
-  for (Tick n = 0; n < kDuration; ++n) ASSERT_EQ(first.at(n), same.at(n));
-  EXPECT_NE(first.at(0), other.at(0));
-}
-
 TEST(TrackingDisplayTest, WhatCannotBeShownIsRefused) {
   TrackingDisplay::Config config;
   config.reference_scale_m = 0.2;

@@ -117,13 +117,6 @@ TEST(OutputErrorTest, AnUnstableStartIsMirroredAndComesOutStable) {
   EXPECT_TRUE(std::isfinite(sut.heldout.free_run_rms_n));
 }
 
-TEST(OutputErrorTest, IsDeterministic) {
-  const Record record = noisy_record(9, 0.2);
-  const DifferenceModel start = fit_arx(record, 4).model;
-  EXPECT_EQ(refine_output_error(record, start).model.denominator,
-            refine_output_error(record, start).model.denominator);
-}
-
 TEST(OutputErrorTest, AStartOfAnotherRateIsRefused) {
   DifferenceModel start = body_like_model();
   start.rate_hz = 100.0;

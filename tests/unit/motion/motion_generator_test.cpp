@@ -135,15 +135,4 @@ TEST(MotionGeneratorTest, ATrialOfAnotherLengthOrAHostileStartIsRefused) {
   EXPECT_THROW(sut.arm(trajectory(), other), ConfigError);
 }
 
-TEST(MotionGeneratorTest, TwoGeneratorsGiveTheSameBits) {
-  auto one = armed();
-  auto two = armed();
-  for (Tick tick = 0; tick < kStart + kDuration; tick += 1 + tick % 3) {
-    const PlatformCommand a = one.step(tick);
-    const PlatformCommand b = two.step(tick);
-    ASSERT_EQ(a.position_m, b.position_m);
-    ASSERT_EQ(a.acceleration_m_s2, b.acceleration_m_s2);
-  }
-}
-
 }  // namespace stillhand::motion::motion_generator_test

@@ -61,16 +61,6 @@ TEST(ProtocolTest, EveryOrderOccursAmongSeeds) {
   EXPECT_EQ(orders.size(), 6u);
 }
 
-TEST(ProtocolTest, TheSameSeedGivesTheSamePlan) {
-  const auto first = plan(three_conditions(7));
-  const auto again = plan(three_conditions(7));
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    EXPECT_EQ(first[i].label, again[i].label);
-    EXPECT_EQ(first[i].motion_seed, again[i].motion_seed);
-    EXPECT_EQ(first[i].reference_seed, again[i].reference_seed);
-  }
-}
-
 TEST(ProtocolTest, NoTwoTrialsShareMotionOrTarget) {
   const auto trials = plan(three_conditions(1));
   std::set<std::uint64_t> motions;
