@@ -106,32 +106,28 @@ TEST(ControlModelFileTest, WhatHasTheWrongShapeIsRefusedByName) {
   std::string twice = control_model_json(full_model(), 1);
   twice.insert(twice.find("\"rig\""), "\"rig\": 2, ");
   EXPECT_THAT(refusal(twice), AllOf(HasSubstr("rig"), HasSubstr("twice")));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["paths"][0]["lag_s"] = -0.1; })),
-              HasSubstr("m.json.paths[0].lag_s"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["output"]["low"] = 3.0; })),
-              HasSubstr("m.json.output.high"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["format"] = "stillhand model"; })),
-              HasSubstr("m.json.format"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["inputs"][0]["channel"] = "a_q"; })),
-              AllOf(HasSubstr("m.json.inputs[0].channel"), HasSubstr("a_q")));
   EXPECT_THAT(refusal(changed([](Json& json) { json["inputs"][1].erase("numerator"); })),
               HasSubstr("m.json.inputs[1].numerator"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["waves"][1]["sine_n"] = nullptr; })),
-              HasSubstr("m.json.waves[1].sine_n"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][0]["operator"] = "play"; })),
-              HasSubstr("m.json.hysteresis[0].operator"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][1]["threshold"] = 0.0; })),
-              HasSubstr("m.json.hysteresis[1].threshold"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["loop"]["ticks"] = 0; })),
-              HasSubstr("m.json.loop.ticks"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][1]["low"] = 15.0; })),
-              HasSubstr("m.json.hysteresis[1].high"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["denominator"] = Json::array(); })),
-              HasSubstr("m.json.denominator"));
-  EXPECT_THAT(refusal(changed([](Json& json) {
-                json["output"]["values"] = std::vector<double>(100'000, 0.0);
-              })),
-              HasSubstr("m.json.output.values"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["inputs"][0]["channel"] = "a_q"; })),
+              AllOf(HasSubstr("m.json.inputs[0].channel"), HasSubstr("a_q")));
+  const struct {
+    const char* at;
+    Json value;
+    const char* named;
+  } cases[] = {{"/paths/0/lag_s", -0.1, "paths[0].lag_s"},
+               {"/output/low", 3.0, "output.high"},
+               {"/format", "stillhand model", "format"},
+               {"/waves/1/sine_n", nullptr, "waves[1].sine_n"},
+               {"/hysteresis/0/operator", "play", "hysteresis[0].operator"},
+               {"/hysteresis/1/threshold", 0.0, "hysteresis[1].threshold"},
+               {"/loop/ticks", 0, "loop.ticks"},
+               {"/hysteresis/1/low", 15.0, "hysteresis[1].high"},
+               {"/denominator", Json::array(), "denominator"},
+               {"/output/values", std::vector<double>(100'000, 0.0), "output.values"}};
+  for (const auto& each : cases) {
+    const auto set = [&](Json& json) { json[Json::json_pointer(each.at)] = each.value; };
+    EXPECT_THAT(refusal(changed(set)), HasSubstr(std::string("m.json.") + each.named)) << each.at;
+  }
 }
 
 TEST(ControlModelFileTest, WhatTheCancellerWouldRefuseIsSaid) {
