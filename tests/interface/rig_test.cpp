@@ -130,6 +130,12 @@ class RigProcessTest : public testing::Test {
     announce(1);
     ASSERT_TRUE(eventually([this] { return speed_m_s_ > kMoves_m_s; }));
   }
+  /// From any speed in 300 ticks (services/processes/rig/shell.cpp), whatever motion commands.
+  void expect_rest() {
+    const Tick from = tick_;
+    ASSERT_TRUE(eventually([this, from] { return tick_ > from + 400; }));
+    EXPECT_LT(speed_m_s_, kRest_m_s);
+  }
 
   std::atomic<bool> commands_force_{false}, commands_motion_{false};
   // The newest sample of the rig's truth.
@@ -188,11 +194,7 @@ TEST_F(RigProcessTest, AfterAnEmergencyStopThePlatformBrakesWhateverMotionComman
   stop.asker("test");
   request_.write(stop);
   ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
-  // From any speed in 300 ticks (services/processes/rig/shell.cpp); commands go on to ask for
-  // motion.
-  const Tick stopped_tick = tick_;
-  ASSERT_TRUE(eventually([this, stopped_tick] { return tick_ > stopped_tick + 400; }));
-  EXPECT_LT(speed_m_s_, kRest_m_s);
+  expect_rest();
   EXPECT_EQ(command_tick_, kHeld);
 }
 
@@ -201,15 +203,11 @@ TEST_F(RigProcessTest, WithoutTheLabsLifeSignThePlatformBrakesWhateverMotionComm
   expect_motion();
   lab_is_dead_ = true;
   ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
-  const Tick held_tick = tick_;
-  ASSERT_TRUE(eventually([this, held_tick] { return tick_ > held_tick + 400; }));
-  EXPECT_LT(speed_m_s_, kRest_m_s);
+  expect_rest();
   // Back again: not in this trial.
   lab_is_dead_ = false;
-  const Tick back_tick = tick_;
-  ASSERT_TRUE(eventually([this, back_tick] { return tick_ > back_tick + 400; }));
+  expect_rest();
   EXPECT_EQ(command_tick_, kHeld);
-  EXPECT_LT(speed_m_s_, kRest_m_s);
   announce(2);
   EXPECT_TRUE(eventually([this] { return speed_m_s_ > kMoves_m_s; }));
 }
@@ -218,9 +216,7 @@ TEST_F(RigProcessTest, WithoutATrialThePlatformHoldsWhateverMotionCommands) {
   expect_motion();
   announce(-1);
   ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
-  const Tick held_tick = tick_;
-  ASSERT_TRUE(eventually([this, held_tick] { return tick_ > held_tick + 400; }));
-  EXPECT_LT(speed_m_s_, kRest_m_s);
+  expect_rest();
 }
 
 TEST_F(RigProcessTest, MotionThatFallsSilentIsNotFollowedAgainInTheTrial) {
@@ -229,10 +225,8 @@ TEST_F(RigProcessTest, MotionThatFallsSilentIsNotFollowedAgainInTheTrial) {
   // A command that is missing, then the end of the permission.
   ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
   commands_motion_ = true;
-  const Tick held_tick = tick_;
-  ASSERT_TRUE(eventually([this, held_tick] { return tick_ > held_tick + 400; }));
+  expect_rest();
   EXPECT_EQ(command_tick_, kHeld);
-  EXPECT_LT(speed_m_s_, kRest_m_s);
 }
 
 TEST_F(RigProcessTest, ARigThatIsAskedToEndBrakesThePlatformFirst) {

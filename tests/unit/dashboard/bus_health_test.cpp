@@ -14,6 +14,7 @@ constexpr std::int64_t kBegin = 1000 * kSecond;
 
 class BusHealthTest : public ::testing::Test {
  protected:
+  BusHealthTest() { sut.set_running(true, kBegin); }
   // Sample `n` of a topic, `late_ns` after its time.
   void take(std::size_t topic, std::int64_t n, std::int64_t late_ns = 0) {
     const std::int64_t sent = kBegin + n * kMs + late_ns;
@@ -43,13 +44,11 @@ class BusHealthTest : public ::testing::Test {
 };
 
 TEST_F(BusHealthTest, AnUndisturbedSessionIsHealthy) {
-  sut.set_running(true, kBegin);
   run(0, 5000);
   EXPECT_EQ(sut.level(), Level::kHealthy);
 }
 
 TEST_F(BusHealthTest, ALateSampleIsTheAlarmOfItsOwnTopic) {
-  sut.set_running(true, kBegin);
   run(0, 3000);
   take(0, 3000);
   take(1, 3000, 20 * kMs);
@@ -63,14 +62,12 @@ TEST_F(BusHealthTest, ALateSampleIsTheAlarmOfItsOwnTopic) {
 }
 
 TEST_F(BusHealthTest, StartUpIsPassedOver) {
-  sut.set_running(true, kBegin);
   run(0, 1000);
   take(1, 1000, 20 * kMs);
   EXPECT_EQ(sut.level(), Level::kHealthy);  // the grace is 2 s
 }
 
 TEST_F(BusHealthTest, AStoppedProcessShowsByItsTopicAndItsName) {
-  sut.set_running(true, kBegin);
   run(0, 3000);
   for (std::int64_t n = 3000; n < 4000; ++n) {
     take(0, n);
@@ -85,7 +82,6 @@ TEST_F(BusHealthTest, AStoppedProcessShowsByItsTopicAndItsName) {
 }
 
 TEST_F(BusHealthTest, AProcessThatNeverCameIsMissing) {
-  sut.set_running(true, kBegin);
   for (std::int64_t n = 0; n <= 5000; n += 100) {
     sut.alive(0, kBegin + n * kMs);
     sut.step(kBegin + n * kMs);
@@ -94,7 +90,6 @@ TEST_F(BusHealthTest, AProcessThatNeverCameIsMissing) {
 }
 
 TEST_F(BusHealthTest, TheEndOfASessionIsNoFault) {
-  sut.set_running(true, kBegin);
   run(0, 3000);
   sut.set_running(false, kBegin + 3 * kSecond);
   sut.step(kBegin + 60 * kSecond);
@@ -102,7 +97,6 @@ TEST_F(BusHealthTest, TheEndOfASessionIsNoFault) {
 }
 
 TEST_F(BusHealthTest, WhatWasLateWhenTheSessionEndedStaysAndCanBeAcknowledged) {
-  sut.set_running(true, kBegin);
   run(0, 3000);
   take(1, 3000, 20 * kMs);
   sut.set_running(false, kBegin + 4 * kSecond);
@@ -113,7 +107,6 @@ TEST_F(BusHealthTest, WhatWasLateWhenTheSessionEndedStaysAndCanBeAcknowledged) {
 }
 
 TEST_F(BusHealthTest, ALongChainIsTold) {
-  sut.set_running(true, kBegin);
   run(0, 3000);
   sut.chain().command(3000, kSecond, kSecond + kMs);
   sut.chain().used(3000, kSecond + 12 * kMs);
@@ -122,7 +115,6 @@ TEST_F(BusHealthTest, ALongChainIsTold) {
 }
 
 TEST_F(BusHealthTest, ASecondWriterOfATopicTakesNoAlarmAway) {
-  sut.set_running(true, kBegin);
   const auto second = [&](std::int64_t n) {
     const std::int64_t sent = kBegin + n * kMs;
     sut.take(1, {7, n + 1, n, sent, sent, sent + kMs / 10});
@@ -137,9 +129,10 @@ TEST_F(BusHealthTest, ASecondWriterOfATopicTakesNoAlarmAway) {
 
 TEST_F(BusHealthTest, TimesThatCannotBeRaiseNothing) {
   constexpr std::int64_t kFar = 9'000'000'000'000'000'000;  // of a damaged file
-  sut.set_running(true, kFar);
-  sut.step(-kFar);
-  EXPECT_EQ(sut.level(), Level::kHealthy);
+  BusHealth fresh{Config{}, {{"raw", kMs, 2 * kMs}}, {"rig", "sensing"}};
+  fresh.set_running(true, kFar);
+  fresh.step(-kFar);
+  EXPECT_EQ(fresh.level(), Level::kHealthy);
 }
 
 TEST(BusHealthConfigTest, AWarningAboveItsCriticalValueIsRefused) {

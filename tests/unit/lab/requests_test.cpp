@@ -11,8 +11,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-Command command(Action action, std::uint64_t request, const char* asker = "desk") {
-  return {action, request, asker, "", asker};
+Command command(Action action, std::uint64_t request, const char* asker = "desk",
+                const char* text = "") {
+  return {action, request, asker, text, asker};
 }
 
 TEST(RequestsTest, APauseHoldsUntilAStart) {
@@ -73,8 +74,7 @@ TEST(RequestsTest, AnEmergencyStopIsHeardWhateverItsNumberAndNeverTakenBack) {
 
 TEST(RequestsTest, ARepetitionBetweenTrialsIsForTheScriptOnceAndHasItsReason) {
   Requests sut;
-  auto repeat = command(Action::kRepeat, 1);
-  repeat.text = "coughed";
+  const auto repeat = command(Action::kRepeat, 1, "desk", "coughed");
   EXPECT_THAT(sut.take(repeat, false), HasSubstr("the last trial runs again: coughed"));
   EXPECT_FALSE(sut.paused());
   EXPECT_EQ(sut.take_asked().repeat, "coughed");
@@ -83,8 +83,7 @@ TEST(RequestsTest, ARepetitionBetweenTrialsIsForTheScriptOnceAndHasItsReason) {
 
 TEST(RequestsTest, ARepetitionDuringATrialStopsItWithTheReason) {
   Requests sut;
-  auto repeat = command(Action::kRepeat, 1);
-  repeat.text = "slipped";
+  const auto repeat = command(Action::kRepeat, 1, "desk", "slipped");
   EXPECT_THAT(sut.take(repeat, true), HasSubstr("a start runs it again"));
   EXPECT_EQ(sut.trial_stopped(), "repeated, asked by desk: slipped");
   EXPECT_TRUE(sut.paused());
@@ -93,12 +92,9 @@ TEST(RequestsTest, ARepetitionDuringATrialStopsItWithTheReason) {
 
 TEST(RequestsTest, AnAbortIsNeverTakenBackAndNotesComeOnce) {
   Requests sut;
-  auto note = command(Action::kNote, 1);
-  note.text = "window open";
-  sut.take(note, true);
-  auto abort = command(Action::kAbort, 2);
-  abort.text = "fire alarm";
-  EXPECT_THAT(sut.take(abort, true), HasSubstr("the session ends: fire alarm"));
+  sut.take(command(Action::kNote, 1, "desk", "window open"), true);
+  EXPECT_THAT(sut.take(command(Action::kAbort, 2, "desk", "fire alarm"), true),
+              HasSubstr("the session ends: fire alarm"));
   EXPECT_EQ(sut.aborted(), "aborted, asked by desk: fire alarm");
   EXPECT_EQ(sut.take_asked().notes, std::vector<std::string>{"desk: window open"});
   EXPECT_TRUE(sut.take_asked().notes.empty());
@@ -107,9 +103,8 @@ TEST(RequestsTest, AnAbortIsNeverTakenBackAndNotesComeOnce) {
 
 TEST(RequestsTest, ANoteChangesNothing) {
   Requests sut;
-  auto note = command(Action::kNote, 1);
-  note.text = "alarms acknowledged";
-  EXPECT_EQ(sut.take(note, true), "desk: alarms acknowledged");
+  EXPECT_EQ(sut.take(command(Action::kNote, 1, "desk", "alarms acknowledged"), true),
+            "desk: alarms acknowledged");
   EXPECT_FALSE(sut.paused());
 }
 

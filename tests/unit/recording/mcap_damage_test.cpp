@@ -123,31 +123,21 @@ TEST_P(McapDamageTest, WhatACutDropsIsCounted) {
               testing::Contains(testing::Field(&Damage::kind, DamageKind::kNoFooter)));
 }
 
-TEST_P(McapDamageTest, OneFlippedBitCostsAtMostItsChunkAndIsSaid) {
-  for (std::size_t bit = 0; bit < closed_.size() * 8; ++bit) {
-    Bytes flipped = closed_;
-    flipped[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
-    MemorySource source(flipped);
-    McapReader sut(source);
-    ASSERT_TRUE(sut.status().ok()) << bit;
-    const std::size_t lost = lost_chunks(messages_of(sut));
-    ASSERT_LE(lost, 1u) << "byte " << bit / 8 << " bit " << bit % 8;
-    ASSERT_TRUE(lost == 0 || sut.lost_bytes() > 0) << "byte " << bit / 8 << " bit " << bit % 8;
-    ASSERT_TRUE(sut.verify().ok());
-    ASSERT_FALSE(sut.damage().empty()) << "byte " << bit / 8 << " bit " << bit % 8;
-  }
-}
-
-TEST_P(McapDamageTest, OneFlippedBitAfterACrashCostsAtMostItsChunk) {
-  for (std::size_t bit = 0; bit < crashed_.size() * 8; ++bit) {
-    Bytes flipped = crashed_;
-    flipped[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
-    MemorySource source(flipped);
-    McapReader sut(source);
-    ASSERT_TRUE(sut.status().ok()) << bit;
-    const std::size_t lost = lost_chunks(messages_of(sut));
-    ASSERT_LE(lost, 1u) << "byte " << bit / 8 << " bit " << bit % 8;
-    ASSERT_TRUE(lost == 0 || sut.lost_bytes() > 0) << "byte " << bit / 8 << " bit " << bit % 8;
+TEST_P(McapDamageTest, OneFlippedBitCostsAtMostItsChunkAlsoAfterACrashAndIsSaid) {
+  for (const Bytes& whole : {closed_, crashed_}) {
+    for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+      Bytes flipped = whole;
+      flipped[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
+      MemorySource source(flipped);
+      McapReader sut(source);
+      ASSERT_TRUE(sut.status().ok()) << bit;
+      const std::size_t lost = lost_chunks(messages_of(sut));
+      ASSERT_LE(lost, 1u) << "byte " << bit / 8 << " bit " << bit % 8;
+      ASSERT_TRUE(lost == 0 || sut.lost_bytes() > 0) << "byte " << bit / 8 << " bit " << bit % 8;
+      if (whole.size() == crashed_.size()) continue;
+      ASSERT_TRUE(sut.verify().ok());
+      ASSERT_FALSE(sut.damage().empty()) << "byte " << bit / 8 << " bit " << bit % 8;
+    }
   }
 }
 
