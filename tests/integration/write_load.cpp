@@ -29,8 +29,7 @@ int write_file(const std::string& path, std::int64_t rate, std::int64_t seconds)
   const auto schema = writer.add_schema(kType, recording::kSchemaEncoding, topics::idl_of(kType));
   std::array<recording::ChannelId, kTopics> channels{};
   for (std::size_t i = 0; i < kTopics; ++i) {
-    runtime::WriterQos qos;
-    qos.depth = 16;
+    const runtime::WriterQos qos{.depth = 16};
     channels[i] = writer.add_channel("load/" + std::to_string(i), schema,
                                      recording::kMessageEncoding, recording::qos_texts(qos));
   }

@@ -57,8 +57,7 @@ TEST(RigCodecTest, EveryFieldOfTheTruthIsTheRigs) {
   output.truth = {0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5};
   output.flags = 1;
   output.motor_flags = 8;
-  rig::RigInput input;
-  input.pegged = true;
+  rig::RigInput input{.pegged = true};
   const Fields wanted{{"rig", "0"},
                       {"tick", "10"},
                       {"stamp_ns", "0"},

@@ -118,8 +118,7 @@ std::complex<double> response(const Body& body, double frequency_hz) {
 }
 
 BodyFigures figures_of(const Body& body) {
-  BodyFigures out;
-  out.dc_n_per_m_s2 = response(body, 0.0).real();
+  BodyFigures out{.dc_n_per_m_s2 = response(body, 0.0).real()};
   const double dc = std::abs(out.dc_n_per_m_s2);
   out.notch_depth = 1e9;
   for (double hz = 4.0; hz <= 10.0; hz += 0.02) {

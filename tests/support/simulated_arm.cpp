@@ -142,8 +142,7 @@ class Stepper {
 
  private:
   [[nodiscard]] State rate_at(const State& x, double force, double accel, double command) const {
-    State out;
-    out.q = x.v;
+    State out{.q = x.v};
     const Vector forces = -(m_.stiffness * x.q + m_.damping * x.v) - m_.carried * accel +
                           Vector(x.muscle, -x.muscle, force);
     out.v = forces.cwiseQuotient(m_.mass);

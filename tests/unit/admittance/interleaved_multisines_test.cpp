@@ -61,10 +61,7 @@ TEST(InterleavedMultisinesTest, LinesAreOddRiseInTurnAndSpanTheBand) {
 TEST(InterleavedMultisinesTest, BoundsHoldBetweenTheSamples) {
   for (const std::int64_t seed : {1, 2, 3}) {
     for (const bool schroeder : {false, true}) {
-      ExcitationConfig config;
-      config.rate_hz = 60.0;
-      config.schroeder = schroeder;
-      config.seed = seed;
+      const ExcitationConfig config{.rate_hz = 60.0, .schroeder = schroeder, .seed = seed};
       const Excitation sut = design(config);
       const Peaks force = fine_peaks(sut.force, config.period_s);
       const Peaks motion = fine_peaks(sut.motion, config.period_s);
@@ -78,9 +75,7 @@ TEST(InterleavedMultisinesTest, BoundsHoldBetweenTheSamples) {
 }
 
 TEST(InterleavedMultisinesTest, TheBoundOfThePositionScalesTheMotion) {
-  ExcitationConfig config;
-  config.rate_hz = 250.0;
-  config.peak_position_m = 0.001;
+  const ExcitationConfig config{.rate_hz = 250.0, .peak_position_m = 0.001};
   const Excitation sut = design(config);
   const Peaks motion = fine_peaks(sut.motion, config.period_s);
   EXPECT_LE(motion.position, 0.001);

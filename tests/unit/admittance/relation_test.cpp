@@ -12,10 +12,7 @@ namespace {
 
 // Three records of the rig: stick free, free with the lines swapped, pegged.
 RelationTest relation_of(const rig::RigConfig& config) {
-  ExcitationConfig excitation;
-  excitation.period_s = 10.0;
-  excitation.lowest_hz = 0.1;
-  excitation.lines = 12;
+  ExcitationConfig excitation{.period_s = 10.0, .lowest_hz = 0.1, .lines = 12};
   const Excitation straight = design(excitation);
   excitation.swapped = true;
   const Excitation swapped = design(excitation);

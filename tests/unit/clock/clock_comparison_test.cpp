@@ -66,9 +66,7 @@ TEST(ClockComparisonTest, TheOffsetLiesWithinItsUncertaintyThoughOneExchangeInFi
   constexpr int kRuns = 200;
   for (int i = 0; i < kRuns; ++i) {
     ClockComparison sut;
-    Network network;
-    network.held_up = 0.1;
-    network.draw = signal::Gaussian(static_cast<std::uint64_t>(i) + 1, 1);
+    Network network{.held_up = 0.1, .draw = signal::Gaussian(static_cast<std::uint64_t>(i) + 1, 1)};
     run(sut, network, 64);
     const ClockOffset offset = *sut.offset(network.now_ns);
     within += std::abs(error_ns(sut, network)) <= offset.uncertainty_ns ? 1 : 0;
@@ -84,9 +82,7 @@ TEST(ClockComparisonTest, TheUncertaintyHoldsThoughNineOfTenMessagesAreHeldUp) {
   int outside = 0;
   for (int i = 0; i < 200; ++i) {
     ClockComparison sut;
-    Network network;
-    network.held_up = 0.9;
-    network.draw = signal::Gaussian(static_cast<std::uint64_t>(i) + 1, 2);
+    Network network{.held_up = 0.9, .draw = signal::Gaussian(static_cast<std::uint64_t>(i) + 1, 2)};
     for (int n = 8; n < 100; n += 4) {
       run(sut, network, n == 8 ? 8 : 4);
       const auto offset = sut.offset(network.now_ns);
@@ -117,9 +113,7 @@ TEST(ClockComparisonTest, AWayThatIsAlwaysLongerThanTheWayBackStaysWithinTheUnce
 
 TEST(ClockComparisonTest, ADriftOf50PpmIsNoticedAndMeasured) {
   ClockComparison sut;
-  Network network;
-  network.drift = 50e-6;
-  network.held_up = 0.1;
+  Network network{.drift = 50e-6, .held_up = 0.1};
   run(sut, network, 64);
   const ClockOffset offset = *sut.offset(network.now_ns);
   EXPECT_NEAR(offset.drift_ppm, 50.0, 3.0 * offset.drift_sigma_ppm);
@@ -131,9 +125,7 @@ TEST(ClockComparisonTest, ADriftOf50PpmIsNoticedAndMeasured) {
 
 TEST(ClockComparisonTest, AClockThatKeepsTimeIsNeverSaidToDriftOrJump) {
   ClockComparison sut;
-  Network network;
-  network.drift = 5e-6;
-  network.held_up = 0.3;
+  Network network{.drift = 5e-6, .held_up = 0.3};
   for (int i = 0; i < 4 * 3600; ++i) {
     EXPECT_FALSE(sut.take(network.exchange())) << i;
     if (const auto offset = sut.offset(network.now_ns)) {
@@ -146,8 +138,7 @@ class ClockStepTest : public testing::TestWithParam<std::int64_t> {};
 
 TEST_P(ClockStepTest, IsNoticedWithinThreeExchangesAndTheNewOffsetIsRight) {
   ClockComparison sut;
-  Network network;
-  network.held_up = 0.1;
+  Network network{.held_up = 0.1};
   run(sut, network, 100);
   network.offset_ns += GetParam();
   int needed = 0;

@@ -115,8 +115,7 @@ TEST(ControlModelTest, ASlowPoleThatAZeroCancelsIsLeftOut) {
 TEST(ControlModelTest, WithALeadItComesSooner) {
   const Motion motion;
   const diagnosis::Model model = two_modes();
-  ControlOptions options;
-  options.lead_s = 0.02;
+  const ControlOptions options{.lead_s = 0.02};
   const ConvertedModel control = to_control_model(model, motion.signals(), options);
   EXPECT_LT(difference(model, control.model, motion, 0.02), 0.03);
   EXPECT_GT(difference(model, control.model, motion), 0.1);
@@ -229,8 +228,7 @@ TEST(ControlModelTest, ASpringThatCantBeCarriedLeavesABodyFittedWithoutIt) {
   const diagnosis::Signals signals =
       motion.signals(diagnosis::free_run(model, motion.signals()).prediction);
   EXPECT_TRUE(to_control_model(model, signals).treatments.front().cancelled);
-  ControlOptions strict;
-  strict.max_difference = 1e-9;
+  const ControlOptions strict{.max_difference = 1e-9};
   const ConvertedModel control = to_control_model(model, signals, strict);
   EXPECT_FALSE(control.treatments.front().cancelled);
   EXPECT_FALSE(control.model.loop);

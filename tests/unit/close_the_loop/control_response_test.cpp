@@ -208,9 +208,7 @@ TEST(ControlResponseTest, NothingIsMetWithoutAnError) {
 // What lies outside the band is met with less weight and does not count in the error: a response
 // that is 1 in the band and 0 above it.
 TEST(ControlResponseTest, TheErrorIsThatOfTheBand) {
-  ControlOptions options;
-  options.low_hz = 0.5;
-  options.high_hz = 1.0;
+  ControlOptions options{.low_hz = 0.5, .high_hz = 1.0};
   const Response shelf = [](double frequency_hz) {
     return Complex(frequency_hz < 4.0 ? 1.0 : 0.0);
   };

@@ -136,8 +136,7 @@ TEST_F(BusHealthTest, TimesThatCannotBeRaiseNothing) {
 }
 
 TEST(BusHealthConfigTest, AWarningAboveItsCriticalValueIsRefused) {
-  Config config;
-  config.silent_warning_ms = 400.0;
+  const Config config{.silent_warning_ms = 400.0};
   EXPECT_THAT(support::refusal([&] { BusHealth(config, {}, {}); }),
               testing::StrEq("dashboard.silent_warning_ms: got 400, want at most 300, the "
                              "critical value"));

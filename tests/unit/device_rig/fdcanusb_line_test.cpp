@@ -33,8 +33,7 @@ TEST(SendLineTest, EndsWithTheChecksumOfTheMakersRoutine) {
 }
 
 TEST(SendLineTest, TheLongestFrameFits) {
-  Frame frame;
-  frame.size = Frame::kMost;
+  const Frame frame{.size = Frame::kMost};
   EXPECT_EQ(send_line(0x8001, frame, true).view().back(), '\n');
 }
 

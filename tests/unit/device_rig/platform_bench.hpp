@@ -79,8 +79,7 @@ class PlatformBench {
   };
 
   static PlatformLinkConfig link(Parts::Platform protocol) {
-    PlatformLinkConfig config;
-    config.valid_ms = kValid_ms;
+    PlatformLinkConfig config{.valid_ms = kValid_ms};
     if (protocol == Parts::Platform::kMoog) config.period_ticks = 16;
     return config;
   }
@@ -194,11 +193,7 @@ class PlatformBench {
     speed_m_s_ = state.velocity_m_s;
   }
   // The walls are the guard's business: the seat's own are far away.
-  static rig::PlatformConfig wide() {
-    rig::PlatformConfig config;
-    config.workspace_m = 1.0;
-    return config;
-  }
+  static rig::PlatformConfig wide() { return {.workspace_m = 1.0}; }
 
   bool moog_;
   PlatformExchange exchange_;

@@ -29,11 +29,7 @@ Body one_mode() {
   return body;
 }
 
-Body static_body() {
-  Body body;
-  body.numerators = {{-3.2}};
-  return body;
-}
+Body static_body() { return {.numerators = {{-3.2}}}; }
 
 // Keeps the diagnosis that the evidence refers to.
 struct Made {

@@ -62,8 +62,7 @@ TEST(EffectKindsTest, EveryProposalCanBeRunAndFitted) {
       if (proposal.body) model.body = *proposal.body;
       model.effects.push_back(proposal.effect);
       EXPECT_GT(complexity(proposal.effect), 0u);
-      FitOptions options;
-      options.max_iterations = 2;
+      const FitOptions options{.max_iterations = 2};
       EXPECT_GT(fit(model, of.signals, of.blocks, options).rmse, 0.0);
       EXPECT_FALSE(kind->evidence(model.effects[0]).empty());
       FreeRun run = free_run(model, of.signals, !kind->time_only(proposal.effect));

@@ -52,9 +52,7 @@ void expect_recovered(const Model& truth) {
   Model sut = disturbed(truth);
   FreeRun run;
   const double before = residual_of(sut, signals, run).norm();
-  FitOptions options;
-  options.max_iterations = 100;
-  options.relative_tolerance = 1e-14;
+  const FitOptions options{.max_iterations = 100, .relative_tolerance = 1e-14};
   const FitResult result = fit(sut, signals, blocks, options);
   EXPECT_TRUE(result.finite);
   const double largest = 1e-6 * before;
@@ -115,8 +113,7 @@ TEST(FitTest, AFitNeverEndsWorseThanItBegan) {
     FreeRun run;
     const double before = residual_of(sut, signals, run).norm();
     if (!run.finite) continue;
-    FitOptions options;
-    options.max_iterations = 3;
+    const FitOptions options{.max_iterations = 3};
     const FitResult result = fit(sut, signals, blocks, options);
     const double after = residual_of(sut, signals, run).norm();
     EXPECT_TRUE(run.finite);
@@ -151,9 +148,7 @@ TEST(FitTest, TheGramsAtTheEndAreThoseOfTheFittedModel) {
   const Blocks blocks = make_blocks(signals);
   for (const int iterations : {1, 2, 5, 60}) {
     Model sut = disturbed(truth);
-    FitOptions options;
-    options.max_iterations = iterations;
-    options.grams_at_end = true;
+    FitOptions options{.max_iterations = iterations, .grams_at_end = true};
     const FitResult result = fit(sut, signals, blocks, options);
     ASSERT_TRUE(result.grams) << iterations;
     const Linearisation line = linearised(sut, signals);
@@ -170,8 +165,7 @@ TEST(FitTest, TheGramsAtTheEndAreThoseOfTheFittedModel) {
     options.at_start = &*result.grams;
     EXPECT_NEAR(fit(other, signals, blocks, options).rmse, without.rmse, 1e-9 * without.rmse);
   }
-  FitOptions options;
-  options.grams_at_end = true;
+  const FitOptions options{.grams_at_end = true};
   Model runs_away = made::model_of(made::two_pole_body());
   runs_away.body.denominator = {1.0, -2.1, 1.1};
   EXPECT_FALSE(fit(runs_away, signals, blocks, options).grams);
@@ -335,8 +329,7 @@ TEST(FitTest, RefittingEqualsLeavingFoldsOut) {
 // What is held out of white noise is its RMS, more by half the share of fitted numbers: 3 of 2400.
 // The RMS of 2900 judged samples is known to 1/sqrt(2 2900) = 1.3 %; four times that.
 TEST(FitTest, HeldOutOfPureNoiseIsItsRootMeanSquare) {
-  LinearCase of;
-  of.signals = signals_of(made::white(kCount, 6));
+  LinearCase of{.signals = signals_of(made::white(kCount, 6))};
   fit(of.model, of.signals, of.blocks);
   EXPECT_NEAR(held_out(of.model, of.signals, of.blocks).rmse(), 1.0, 0.053);
 }

@@ -204,8 +204,7 @@ TEST(ModelTest, AnyBodyIsStableOnceItIsStabilised) {
 }
 
 TEST(ModelTest, AStaticBodyIsStable) {
-  Body sut;
-  sut.numerators = {{2.0}};
+  Body sut{.numerators = {{2.0}}};
   EXPECT_TRUE(is_stable(sut));
   stabilise(sut);
   EXPECT_THAT(sut.denominator, ElementsAre(1.0));

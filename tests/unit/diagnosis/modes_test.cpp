@@ -13,10 +13,7 @@ namespace stillhand::diagnosis::modes_test {
 constexpr std::size_t kCount = 2000;
 
 Body with_poles(const std::vector<double>& denominator, std::vector<double> numerator) {
-  Body body;
-  body.numerators = {std::move(numerator)};
-  body.denominator = denominator;
-  return body;
+  return {.numerators = {std::move(numerator)}, .denominator = denominator};
 }
 
 // By hand: at a quarter of the rate w is pi/2; undamped, the poles are +-i, 1 + q^-2.

@@ -56,8 +56,7 @@ inline void expect_proposed(const Planted& planted) {
   Model model = of.baseline.model;
   if (found->body) model.body = *found->body;
   model.effects.push_back(found->effect);
-  FitOptions options;
-  options.max_iterations = 60;
+  const FitOptions options{.max_iterations = 60};
   const FitResult fitted = fit(model, of.signals, of.blocks, options);
   ASSERT_TRUE(fitted.finite);
   EXPECT_LT(fitted.rmse, planted.left * planted.noise);

@@ -156,9 +156,7 @@ Model fitted(double factor, const ResponsePrior* prior) {
   for (std::size_t n = 0; n < kCount; ++n) y[n] += factor * clean[n];
   const Signals signals(measurement, {"u"}, "y");
   Model model = kAssumed;
-  FitOptions options;
-  options.max_iterations = 50;
-  options.prior = prior;
+  const FitOptions options{.max_iterations = 50, .prior = prior};
   fit(model, signals, make_blocks(signals), options);
   return model;
 }

@@ -128,8 +128,7 @@ TEST(SearchTest, OfTwoThatExplainAsMuchTheSimplerIsAdded) {
   }
   const Signals signals = made::signals_of(u, y);
   const Blocks blocks = make_blocks(signals);
-  SearchOptions options;
-  options.most_effects = 1;
+  const SearchOptions options{.most_effects = 1};
   const SearchResult sut = search(fit_baseline(signals, blocks, 0), signals, blocks, options,
                                   in_order, [](const std::string&) { return true; });
   ASSERT_EQ(sut.additions.size(), 1u);
@@ -147,8 +146,7 @@ TEST(SearchTest, WhereNothingIsMissingNothingIsAdded) {
 }
 
 TEST(SearchTest, NoMoreIsAddedThanAskedFor) {
-  SearchOptions options;
-  options.most_effects = 1;
+  const SearchOptions options{.most_effects = 1};
   const Searched sut(0.25, 0.5, options);
   ASSERT_EQ(sut.result.model.effects.size(), 1u);
   EXPECT_THAT(sut.result.model.effects[0].channels, ElementsAre("w"));
@@ -171,8 +169,7 @@ SearchResult search_joined(const std::vector<double>& of_v,
   }
   const Signals signals(joined, {"u"}, "y");
   const Blocks blocks = make_blocks(signals);
-  SearchOptions options;
-  options.most_effects = 1;
+  const SearchOptions options{.most_effects = 1};
   return search(fit_baseline(signals, blocks, 0), signals, blocks, options, in_order,
                 [](const std::string&) { return true; });
 }

@@ -132,12 +132,7 @@ TEST(SelectionTest, TiesNameOtherKindsOnceInTheirOrder) {
   EXPECT_THAT(tied_kinds(sut, 0, 3.0, {}), ElementsAre("tone", "delay"));
 }
 
-Comparison of(double rmse_ratio, double p) {
-  Comparison comparison;
-  comparison.rmse_ratio = rmse_ratio;
-  comparison.p = p;
-  return comparison;
-}
+Comparison of(double rmse_ratio, double p) { return {.rmse_ratio = rmse_ratio, .p = p}; }
 
 // 0.01 is below the fall of a large improvement, 0.15: p counts once for every candidate.
 TEST(SelectionTest, ASmallImprovementMustBeCertainForAllCandidates) {

@@ -48,8 +48,7 @@ TEST(ProjectionTest, ImpossibleImagesAreRefused) {
   EXPECT_THROW(Projection(ScreenConfig{}, 15, 768), ConfigError);
   EXPECT_THROW(Projection(ScreenConfig{}, 1024, 0), ConfigError);
   EXPECT_THROW(Projection(ScreenConfig{}, 1 << 20, 768), ConfigError);
-  ScreenConfig flat;
-  flat.width_m = 0.0;
+  const ScreenConfig flat{.width_m = 0.0};
   EXPECT_THROW(Projection(flat, 1024, 768), ConfigError);
 }
 

@@ -51,8 +51,7 @@ TEST(IdentifierTest, FindsTheBodysResponseAtBothRates) {
 }
 
 TEST(IdentifierTest, RefinementIsAskedFor) {
-  Config config;
-  config.refine = true;
+  const Config config{.refine = true};
   const FeedthroughModel sut = identify(pegged_trial(0.5), config);
   const FeedthroughModel paper = identify(pegged_trial(0.5));
   EXPECT_TRUE(sut.refined);
@@ -61,8 +60,7 @@ TEST(IdentifierTest, RefinementIsAskedFor) {
 }
 
 TEST(IdentifierTest, SettingsOutsideTheirRangeAreRefused) {
-  Config config;
-  config.order = 13;
+  const Config config{.order = 13};
   EXPECT_THROW(identify(pegged_trial(0.0), config), ConfigError);
 }
 
@@ -99,8 +97,7 @@ TEST(IdentifierTest, AForceOnTheSideOfTheAccelerationIsRefusedLive) {
   for (double& acceleration : trial.record.acceleration_m_s2) acceleration = -acceleration;
   EXPECT_TRUE(identify(trial, {}).model);
   for (double& acceleration : trial.record.acceleration_m_s2) acceleration = -acceleration;
-  Config any;
-  any.expected_sign = 0;
+  const Config any{.expected_sign = 0};
   EXPECT_TRUE(identify(trial, any).model);
 }
 

@@ -65,8 +65,7 @@ TEST(IdentifyPositionTest, FindsAKnownHandInMetres) {
 TEST(IdentifyPositionTest, IsTheRefinedChainInMillimetres) {
   PeggedTrial in_mm = trial();
   for (double& x : in_mm.record.force_n) x /= 1e-3;
-  Config refined;
-  refined.refine = true;
+  const Config refined{.refine = true};
   const Identification wanted = identify(in_mm, refined);
   const Identification sut = identify_position(trial(), {});
   ASSERT_TRUE(wanted.model && sut.model) << wanted.why_not << sut.why_not;

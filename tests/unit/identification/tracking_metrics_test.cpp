@@ -118,8 +118,7 @@ TEST(TrackingMetricsTest, TakingTheRemnantOffLessensItsBias) {
   // and the mean of logarithms comes out low.  Spread of one trial about 0.04 Hz with either
   // estimate (measured), so 0.004 Hz for the mean of 100: what is asserted is three of them apart.
   const auto design = signal::reference_design(60.0);
-  Loop loop;
-  loop.remnant_m = 0.08;
+  const Loop loop{.remnant_m = 0.08};
   const double truth = true_crossover(loop, design);
   double paper = 0.0;
   double reference = 0.0;
@@ -138,8 +137,7 @@ TEST(TrackingMetricsTest, TakingTheRemnantOffLessensItsBias) {
 TEST(TrackingMetricsTest, GainAtALineIsAlsoTheEstimateThroughTheReference) {
   // conj(X_r) X_p / conj(X_r) X_e: one record, whole cycles, one number.
   const auto design = signal::reference_design(60.0);
-  Loop loop;
-  loop.remnant_m = 0.05;
+  const Loop loop{.remnant_m = 0.05};
   const auto record = run(loop, design, 3);
   const auto sut = tracking_metrics(record, design);
   std::vector<double> error(record.target_m.size());

@@ -68,8 +68,7 @@ std::string with_titles(const std::string& titles) {
 }
 
 TEST(ReadTest, AChosenColumnIsReadInTheUnitInWhichAHandIsJudged) {
-  ReadOptions options;
-  options.channels = {{"Acc Y"}, "Grip force"};
+  const ReadOptions options{.channels = {{"Acc Y"}, "Grip force"}};
   const Measurement sut = read_measurement(
       file_of(with_titles("Time (s),Acc Y (g),Grip force (kN),temp (degC)")), options);
   EXPECT_EQ(sut.find("Acc Y")->unit, "m/s^2");
@@ -320,8 +319,7 @@ TEST(ReadTest, AHandWithinABlinkIsRefused) {
 }
 
 TEST(ReadTest, MoreThanAskedForIsRefusedBeforeItIsParsed) {
-  ReadOptions options;
-  options.most_values = 399;
+  const ReadOptions options{.most_values = 399};
   EXPECT_THAT(error_of(file_of(table(100)), options),
               HasSubstr("got 101 rows of 4 channels, want at most 399 values"));
 }

@@ -341,8 +341,7 @@ TEST(CountermeasureTest, WhatIsTakenOffIsHeldInAnUnsoundSampleAndFadesIfItLasts)
   const auto theta = [](Tick n) { return 0.1 * std::sin(kTurn * 0.4e-3 * static_cast<double>(n)); };
   const auto off = [](double share) { return share * kPosition_s2 * 2.0 / kLever_m; };
   const std::int64_t ramp = signal::ForceLimits{}.ramp_ticks;
-  Recipe recipe;
-  recipe.signal = SignalConfig{{1000.0, {kPosition_s2}, {1.0}}, {}, {}};
+  const Recipe recipe{.signal = SignalConfig{{1000.0, {kPosition_s2}, {1.0}}, {}, {}}};
   for (const auto& [name, spoil] : unsound()) {
     for (const Tick lasts : {Tick{1}, Tick{10}, ramp, Tick{500}}) {
       Countermeasure sut({}, recipe);
@@ -367,8 +366,7 @@ TEST(CountermeasureTest, WhatIsTakenOffIsHeldInAnUnsoundSampleAndFadesIfItLasts)
 
 // A model of 1e307 overflows at 3 m/s^2: what was taken off goes to zero and stays there.
 TEST(CountermeasureTest, WhatIsNotFiniteIsNotTakenOff) {
-  Recipe recipe;
-  recipe.signal = SignalConfig{{1000.0, {1e307}, {1.0}}, {}, {}};
+  const Recipe recipe{.signal = SignalConfig{{1000.0, {1e307}, {1.0}}, {}, {}}};
   Countermeasure sut({}, recipe);
   for (Tick n = 1; n < 500; ++n) sut.step(input(n, 1e-307, 0.2, 0.0));
   ASSERT_NE(sut.step(input(500, 1e-307, 0.2, 0.0)).taken_off_rad, 0.0);

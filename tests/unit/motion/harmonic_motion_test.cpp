@@ -80,10 +80,7 @@ TEST(HarmonicMotionTest, TheRmsIsThatOfItsLines) {
 
 TEST(HarmonicMotionTest, TheGridHasOnlySmallFactorsAndEnoughPoints) {
   for (std::int64_t k = 3; k < 2000; k += 17) {
-    MotionSpectrum spectrum;
-    spectrum.period_s = 10.0;
-    spectrum.first = k;
-    spectrum.accel_m_s2 = {{1.0, 0.0}};
+    const MotionSpectrum spectrum{.period_s = 10.0, .first = k, .accel_m_s2 = {{1.0, 0.0}}};
     std::size_t size = grid_size(spectrum);
     EXPECT_GE(size, static_cast<std::size_t>(25 * k));
     EXPECT_LE(size, static_cast<std::size_t>(30 * k));

@@ -313,8 +313,7 @@ TEST(PlatformGuardTest, FlagsOfTheCommandArePassedOn) {
 }
 
 TEST(PlatformGuardTest, LimitsBeyondTheApparatusAreRefused) {
-  PlatformLimits limits;
-  limits.max_position_m = 0.16;
+  PlatformLimits limits{.max_position_m = 0.16};
   EXPECT_THROW(PlatformGuard{limits}, ConfigError);
   limits.max_position_m = std::nan("");
   EXPECT_THROW(PlatformGuard{limits}, ConfigError);

@@ -33,8 +33,7 @@ inline diagnosis::Measurement measured(std::size_t count, std::size_t z_period,
 }
 
 inline Candidate candidate(const char* channel) {
-  diagnosis::Body body;
-  body.numerators = {{2.0}};
+  const diagnosis::Body body{.numerators = {{2.0}}};
   return {diagnosis::made::model_of(body, {{"coupled_input", "static", {channel}, {}, {kGain}}}), 0,
           1.0};
 }

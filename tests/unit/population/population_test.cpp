@@ -72,10 +72,7 @@ TEST(PopulationTest, TheLearntStiffnessIsWhatTheRigAnswersWith) {
   config.body.neuromuscular = {};
   config.stick.coulomb_friction_n = 0.0;
   rig::Rig rig(config);
-  rig::RigInput input;
-  input.command_valid = true;
-  input.operator_valid = true;
-  input.operator_force_n = 5.0;
+  const rig::RigInput input{.command_valid = true, .operator_valid = true, .operator_force_n = 5.0};
   double theta_rad = 0.0;
   for (int n = 0; n < 10000; ++n) theta_rad = rig.step(input).truth.theta_rad;
   const double moved_m = theta_rad * config.stick.lever_m;

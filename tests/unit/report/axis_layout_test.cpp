@@ -163,16 +163,14 @@ TEST(ExtentTest, OnlyWhatIsVisibleAlongXCountsForY) {
 }
 
 TEST(ExtentTest, BarsStandOnZeroAndTheirWidthCounts) {
-  Panel panel;
-  panel.series = {Series{.kind = Kind::kBars, .x = {1, 2}, .y = {5, 6}, .bar_width = 0.6}};
+  Panel panel{.series = {Series{.kind = Kind::kBars, .x = {1, 2}, .y = {5, 6}, .bar_width = 0.6}}};
   EXPECT_EQ(extent_y(panel).low, 0.0);
   EXPECT_DOUBLE_EQ(extent_x(panel).low, 0.7);
   EXPECT_DOUBLE_EQ(extent_x(panel).high, 2.3);
 }
 
 TEST(ExtentTest, TheWhiskersOfABoxCount) {
-  Panel panel;
-  panel.series = {Series{.kind = Kind::kBox, .boxes = {{1, -3, 3, 4, 5, 12}}}};
+  const Panel panel{.series = {Series{.kind = Kind::kBox, .boxes = {{1, -3, 3, 4, 5, 12}}}}};
   EXPECT_EQ(extent_y(panel).low, -3.0);
   EXPECT_EQ(extent_y(panel).high, 12.0);
 }

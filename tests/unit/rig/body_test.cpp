@@ -17,11 +17,7 @@ namespace {
 constexpr double kDt_s = kControlPeriod_s;
 constexpr int kSecond = 1000;
 
-StickConfig frictionless() {
-  StickConfig stick;
-  stick.coulomb_friction_n = 0.0;
-  return stick;
-}
+StickConfig frictionless() { return {.coulomb_friction_n = 0.0}; }
 
 /// Sum of unit sinusoids at `frequencies_hz`, phases spread so that the peaks do not add up.
 double multisine(const std::vector<double>& frequencies_hz, double t_s) {
@@ -151,8 +147,7 @@ TEST(BodyTest, EnergyNeverGrowsWithoutInput) {
 // Friction is implicit; in the one tick in which the stick turns round it may act along the part
 // of the way already gone: F_c * a dt^2 / 2 with a = 50 N / 0.65 kg, 8e-6 J, is the most it gives.
 TEST(BodyTest, FrictionTakesEnergyOut) {
-  StickConfig rough;
-  rough.coulomb_friction_n = 2.0;
+  const StickConfig rough{.coulomb_friction_n = 2.0};
   Body sut(BodyConfig{}, rough);
   Body smooth(BodyConfig{}, frictionless());
   for (int n = 0; n < 200; ++n) {
@@ -169,8 +164,7 @@ TEST(BodyTest, FrictionTakesEnergyOut) {
 }
 
 TEST(BodyTest, FrictionHoldsTheStickAgainstALesserForceAndLetsGoAtAGreater) {
-  StickConfig stick;
-  stick.coulomb_friction_n = 0.2;
+  const StickConfig stick{.coulomb_friction_n = 0.2};
   Body held(BodyConfig{}, stick);
   Body moved(BodyConfig{}, stick);
   double held_rad = 0.0;
@@ -272,8 +266,7 @@ TEST(BodyTest, TheLoadCellForceAcceleratesTheDriveInertia) {
 }
 
 TEST(BodyTest, RefusesAStickWithoutMass) {
-  StickConfig stick;
-  stick.drive_mass_kg = 0.0;
+  const StickConfig stick{.drive_mass_kg = 0.0};
   EXPECT_THROW(Body(BodyConfig{}, stick), ConfigError);
 }
 

@@ -209,10 +209,8 @@ TEST(ChainEffectTest, CoggingIsASineOfTheStickSPlaceBelowTheLoadCell) {
 }
 
 TEST(ChainEffectTest, FrictionOfTheEffectIsAddedToTheStickSOwn) {
-  StickConfig rough;
-  rough.coulomb_friction_n = 1.2;
-  ChainEffect effect;
-  effect.friction_n = 1.0;
+  const StickConfig rough{.coulomb_friction_n = 1.2};
+  const ChainEffect effect{.friction_n = 1.0};
   Body sut(BodyConfig{}, StickConfig{}, kControlPeriod_s, effect);  // 0.2 N of its own
   Body declared(BodyConfig{}, rough);
   for (int n = 0; n < 3000; ++n) {

@@ -38,8 +38,7 @@ TEST(NeuromuscularTest, AddsNothingByDefault) {
 // Eq. RG-27: after ten memories of 4 s the felt RMS is 2 m/s^2 to within the ripple of the mean
 // square, 1/(4 pi f T) = 2 %; ln(1 + 0.25 * 2) = 0.405, in steps of 0.02, to within a step.
 TEST(NeuromuscularTest, VibrationStiffensTheTrackingArmAndNotTheIdleOne) {
-  NeuromuscularConfig config;
-  config.stiffening_by_vibration_s2_m = 0.25;
+  const NeuromuscularConfig config{.stiffening_by_vibration_s2_m = 0.25};
   for (const bool pegged : {false, true}) {
     Neuromuscular sut(config, 1);
     int level = 0;
@@ -51,8 +50,7 @@ TEST(NeuromuscularTest, VibrationStiffensTheTrackingArmAndNotTheIdleOne) {
 }
 
 TEST(NeuromuscularTest, SofteningEndsAtItsBound) {
-  NeuromuscularConfig config;
-  config.stiffening_by_vibration_s2_m = -0.3;
+  const NeuromuscularConfig config{.stiffening_by_vibration_s2_m = -0.3};
   Neuromuscular sut(config, 1);
   int level = 0;
   for (int n = 0; n < 40 * kSecond; ++n) {
@@ -63,9 +61,7 @@ TEST(NeuromuscularTest, SofteningEndsAtItsBound) {
 
 // Eq. RG-40, in steps of 0.02 of the logarithm, a tenth of a second apart.
 TEST(NeuromuscularTest, TheStiffnessChangesOnceAndForGood) {
-  NeuromuscularConfig config;
-  config.change = 0.6;
-  config.change_at_s = 2.0;
+  const NeuromuscularConfig config{.change = 0.6, .change_at_s = 2.0};
   for (const bool pegged : {false, true}) {
     Neuromuscular sut(config, 1);
     for (int n = 0; n < 10 * kSecond; ++n) {
@@ -79,9 +75,7 @@ TEST(NeuromuscularTest, TheStiffnessChangesOnceAndForGood) {
 // Eq. RG-28.  5,000 s hold 5000 / (2 * 5) = 500 independent values: the deviation is known to
 // 1 / sqrt(2 * 500) = 3 %; four times that.
 TEST(NeuromuscularTest, WanderHasItsDeviationAndItsTimeConstant) {
-  NeuromuscularConfig config;
-  config.wander = 0.2;
-  config.wander_time_s = 5.0;
+  const NeuromuscularConfig config{.wander = 0.2, .wander_time_s = 5.0};
   Neuromuscular sut(config, 3);
   std::vector<double> log_stiffness;
   for (int n = 0; n < 5000 * kSecond; ++n) {
@@ -112,8 +106,7 @@ TEST(NeuromuscularTest, InvoluntaryForcesHaveTheirSize) {
 }
 
 TEST(NeuromuscularTest, UnmeasuredMotionPushesTheHandOnlyWhileThePlatformMoves) {
-  NeuromuscularConfig config;
-  config.unmeasured_force_n_s2_m = 1.5;
+  const NeuromuscularConfig config{.unmeasured_force_n_s2_m = 1.5};
   Neuromuscular sut(config, 5);
   for (int n = 0; n < 10 * kSecond; ++n) ASSERT_EQ(sut.step({0.0, 0.0, false}).hand_n, 0.0);
   std::vector<double> force_n;
@@ -126,9 +119,7 @@ TEST(NeuromuscularTest, UnmeasuredMotionPushesTheHandOnlyWhileThePlatformMoves) 
 }
 
 TEST(NeuromuscularTest, TheHandOpposesAShareOfTheMotorAfterItsDelay) {
-  NeuromuscularConfig config;
-  config.motor_resistance = 0.3;
-  config.motor_resistance_delay_s = 0.05;
+  const NeuromuscularConfig config{.motor_resistance = 0.3, .motor_resistance_delay_s = 0.05};
   Neuromuscular sut(config, 1);
   for (int n = 0; n < 200; ++n) {
     const double resisting_n = sut.step({0.0, 4.0, false}).resisting_n;
@@ -141,9 +132,7 @@ TEST(NeuromuscularTest, TheHandOpposesAShareOfTheMotorAfterItsDelay) {
 // answers an input held over the tick, half a tick late: pi f dt = 0.3 %, and a tick until the
 // state shows.
 TEST(ReflexTest, AnswersAStretchAsItsTransferFunctionSays) {
-  NeuromuscularConfig config;
-  config.reflex_stiffness_n_m = 300.0;
-  config.reflex_damping_n_s_m = 30.0;
+  const NeuromuscularConfig config{.reflex_stiffness_n_m = 300.0, .reflex_damping_n_s_m = 30.0};
   Reflex sut(config, kControlPeriod_s);
   ASSERT_TRUE(sut.acts());
   const double w = kTwoPi;
@@ -163,8 +152,7 @@ TEST(ReflexTest, AnswersAStretchAsItsTransferFunctionSays) {
 }
 
 TEST(ReflexTest, ItsForceIsBounded) {
-  NeuromuscularConfig config;
-  config.reflex_stiffness_n_m = 1000.0;
+  const NeuromuscularConfig config{.reflex_stiffness_n_m = 1000.0};
   Reflex sut(config, kControlPeriod_s);
   double most_n = 0.0;
   for (int n = 0; n < 3 * kSecond; ++n) most_n = std::max(most_n, sut.step(1.0, 0.0, false));
@@ -229,9 +217,7 @@ TEST(NeuromuscularTest, AHandWithEveryEffectAtItsEndKeepsTheRigBounded) {
 }
 
 TEST(NeuromuscularTest, TheSameSeedGivesTheSameBits) {
-  NeuromuscularConfig config;
-  config.wander = 0.3;
-  config.involuntary_force_n = 1.0;
+  const NeuromuscularConfig config{.wander = 0.3, .involuntary_force_n = 1.0};
   Neuromuscular sut(config, 9);
   Neuromuscular same(config, 9);
   Neuromuscular other(config, 10);

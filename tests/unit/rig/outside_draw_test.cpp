@@ -100,8 +100,7 @@ TEST(OutsideEffectTest, TheReflexComesAfterItsDelay) {
 }
 
 TEST(OutsideEffectTest, DragIsSquareAndOpposesTheMotion) {
-  ChainEffect effect;
-  effect.outside = 50.0;
+  ChainEffect effect{.outside = 50.0};
   const auto p = chain_parameters({}, {}, false);
   for (const double v : {-0.4, -0.1, 0.0, 0.2}) {
     effect.spring = Spring::kArmDrag;

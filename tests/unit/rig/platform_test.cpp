@@ -50,8 +50,7 @@ TEST(PlatformTest, BandwidthExceedsSixHertz) {
 // Eq. RG-1 in continuous time.  Sampling at 1 kHz acts as a delay of at most two ticks in the loop,
 // which changes the closed loop by at most 2 w dt |T|.
 TEST(PlatformTest, FollowsTheTransferFunctionOfItsPositionLoop) {
-  PlatformConfig config;
-  config.acceleration_feedforward = 0.5;
+  const PlatformConfig config{.acceleration_feedforward = 0.5};
   const double w = kTwoPi * config.loop_frequency_hz;
   for (const double f : {1.0, 3.0, 6.0, 12.0}) {
     const std::complex<double> s(0.0, kTwoPi * f);
@@ -177,9 +176,7 @@ TEST(PlatformTest, ReachesADistantCommandNoFasterThanTheCatchVelocity) {
 }
 
 TEST(PlatformTest, RefusesALagThatMakesTheLoopUnstable) {
-  PlatformConfig config;
-  config.loop_frequency_hz = 30.0;
-  config.loop_damping = 0.3;
+  const PlatformConfig config{.loop_frequency_hz = 30.0, .loop_damping = 0.3};
   EXPECT_THROW(Platform{config}, ConfigError);
 }
 

@@ -115,8 +115,7 @@ TEST(RigTest, AtRestEverythingIsZero) {
   RigConfig config;
   config.body.neuromuscular = {};
   Rig sut{config};
-  RigInput input;
-  input.command_valid = true;
+  const RigInput input{.command_valid = true};
   for (int n = 0; n < 1000; ++n) {
     const auto truth = sut.step(input).truth;
     ASSERT_EQ(truth.platform_position_m, 0.0);

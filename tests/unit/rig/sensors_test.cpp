@@ -11,12 +11,7 @@ namespace {
 
 constexpr SensorInput kRest{0.0, 0.0, kGravity_m_s2, 0.0, 0.0, 0.0};
 
-SensorConfig noiseless() {
-  SensorConfig config;
-  config.accel_noise_m_s2_rthz = 0.0;
-  config.load_cell_noise_n_rthz = 0.0;
-  return config;
-}
+SensorConfig noiseless() { return {.accel_noise_m_s2_rthz = 0.0, .load_cell_noise_n_rthz = 0.0}; }
 
 // 200,000 samples: the standard deviation of a normal sample is known to 1/sqrt(2N) = 0.16 %, the
 // mean to sigma/sqrt(N); both tested at five of those.  The board's rounding adds q^2/12.

@@ -29,8 +29,7 @@ EffectPlan with_seed() {
 /// A rig that is shaken by a sum of sines and pegged.
 RigInput shaken_input(int n, bool pegged) {
   const double t_s = n * kControlPeriod_s;
-  RigInput input;
-  input.command_valid = true;
+  RigInput input{.command_valid = true};
   for (const auto& [f_hz, amplitude_m] : {std::pair{0.8, 0.05}, {1.7, 0.01}, {3.1, 0.003}}) {
     const double w = kTwoPi * f_hz;
     input.command_position_m += amplitude_m * std::sin(w * t_s);

@@ -38,8 +38,7 @@ TEST(OfferedQosTest, DiscoveryAnnouncesWhatWasWanted) {
 
 TEST(OfferedQosTest, WhatWasKeptOnADiskIsOfferedFromMemory) {
   for (const auto durability : {Durability::kTransient, Durability::kPersistent}) {
-    WriterQos wanted;
-    wanted.durability = durability;
+    const WriterQos wanted{.durability = durability};
     EXPECT_EQ(announced(wanted).durability, Durability::kTransientLocal);
   }
 }
@@ -55,8 +54,7 @@ TEST(OfferedQosTest, ADurationThatDdsCannotHoldIsForever) {
     EXPECT_EQ(offered.lifespan_ns, kForever_ns) << ns;
     EXPECT_EQ(offered.lease_ns, kForever_ns) << ns;
   }
-  WriterQos longest;
-  longest.deadline_ns = std::int64_t{INT32_MAX} * kSecond_ns - 1;
+  const WriterQos longest{.deadline_ns = std::int64_t{INT32_MAX} * kSecond_ns - 1};
   EXPECT_EQ(announced(longest).deadline_ns, longest.deadline_ns);
 }
 
@@ -64,8 +62,7 @@ TEST(OfferedQosTest, ADurationThatDdsCannotHoldIsForever) {
 TEST(OfferedQosTest, AWriterAnnouncesItselfThreeTimesALease) {
   for (const std::int64_t lease_ns :
        {std::int64_t{10}, std::int64_t{5'000'000}, 3600 * kSecond_ns}) {
-    WriterQos wanted;
-    wanted.lease_ns = lease_ns;
+    const WriterQos wanted{.lease_ns = lease_ns};
     const auto period = offered_qos(wanted).liveliness().announcement_period;
     const std::int64_t period_ns = period.seconds * kSecond_ns + period.nanosec;
     EXPECT_EQ(period_ns, lease_ns * 3 / 10);
@@ -73,8 +70,7 @@ TEST(OfferedQosTest, AWriterAnnouncesItselfThreeTimesALease) {
 }
 
 TEST(OfferedQosTest, TheDepthIsThatOfTheRecording) {
-  WriterQos wanted;
-  wanted.depth = 7;
+  WriterQos wanted{.depth = 7};
   const auto kept = offered_qos(wanted);
   EXPECT_EQ(kept.history().kind, edds::KEEP_LAST_HISTORY_QOS);
   EXPECT_EQ(kept.history().depth, 7);
@@ -90,8 +86,7 @@ TEST(OfferedQosTest, TheDepthIsThatOfTheRecording) {
 // and depth <= those of one instance.
 TEST(OfferedQosTest, TheLimitsHoldTheDepthOfEveryInstance) {
   for (const std::int32_t depth : {0, 1, 16, 33'554'431, 33'554'432, INT32_MAX}) {
-    WriterQos wanted;
-    wanted.depth = depth;
+    const WriterQos wanted{.depth = depth};
     const auto qos = offered_qos(wanted);
     const auto& limits = qos.resource_limits();
     EXPECT_GE(limits.max_samples_per_instance, qos.history().depth) << depth;

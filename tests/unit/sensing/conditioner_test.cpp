@@ -203,8 +203,7 @@ TEST(ConditionerTest, SurvivesAnyInput) {
 }
 
 TEST(ConditionerTest, NamesTheFieldThatIsOutOfRange) {
-  Config config;
-  config.antialias_cutoff_hz = 600.0;
+  const Config config{.antialias_cutoff_hz = 600.0};
   EXPECT_THROW(Conditioner{config}, ConfigError);
 }
 

@@ -18,8 +18,7 @@ namespace stillhand::session::conditions_test {
 namespace {
 
 std::vector<PlannedTrial> planned(const std::string& conditions) {
-  ProtocolOptions options;
-  options.conditions = parse_conditions(conditions);
+  const ProtocolOptions options{.conditions = parse_conditions(conditions)};
   return plan(options);
 }
 

@@ -115,9 +115,7 @@ TEST(InProcessLoopTest, CancelsWhatTheIdleArmCanTellOfTheTrackingOne) {
 // The force that answers a sample acts until the next one in both orders (rig RG-38); where the rig
 // does not wait, its truth states that force one tick later.
 TEST(InProcessLoopTest, TheMotionDoesNotDependOnTheWaitForTheAnswer) {
-  ProtocolOptions options;
-  options.conditions = parse_conditions("C");
-  options.trial_s = 10.0;
+  const ProtocolOptions options{.conditions = parse_conditions("C"), .trial_s = 10.0};
   std::map<double, TrialSignals> signals;
   for (const double wait_s : {0.0, 0.0004}) {
     CoreConfigs configs;

@@ -14,11 +14,7 @@ namespace stillhand::session::protocol_test {
 namespace {
 
 ProtocolOptions three_conditions(std::uint64_t seed) {
-  ProtocolOptions options;
-  options.conditions = parse_conditions("A,B,C");
-  options.trial_s = 20.0;
-  options.seed = seed;
-  return options;
+  return {.conditions = parse_conditions("A,B,C"), .trial_s = 20.0, .seed = seed};
 }
 
 std::string order_of(const std::vector<PlannedTrial>& trials) {
@@ -82,9 +78,7 @@ TEST(ProtocolTest, OnlyCMovesAndCancels) {
 
 TEST(ProtocolTest, APerturbedTrialIsOnThePegAndWithoutTheMotorIfTheStickIsHeld) {
   for (const bool held : {false, true}) {
-    ProtocolOptions options;
-    options.conditions = {Condition::kP};
-    options.stick_held = held;
+    const ProtocolOptions options{.conditions = {Condition::kP}, .stick_held = held};
     const PlannedTrial sut = plan(options).back();
     EXPECT_EQ(sut.trial.phase, held ? TrialPhase::kPegged : TrialPhase::kTracking);
     EXPECT_EQ(sut.cancellation, !held);
@@ -211,8 +205,7 @@ TEST(ProtocolTest, TrialsAreNumberedInTheirOrder) {
 }
 
 TEST(ProtocolTest, OfAStudysConditionsOnlyCCancelsAndOnlyDFilters) {
-  ProtocolOptions options;
-  options.conditions = parse_conditions("F,E,D,C,B,A", kStudyConditions);
+  const ProtocolOptions options{.conditions = parse_conditions("F,E,D,C,B,A", kStudyConditions)};
   const auto trials = plan(options);
   ASSERT_EQ(trials.size(), 7u);
   for (const PlannedTrial& trial : trials) {

@@ -32,8 +32,7 @@ struct Words {
 };
 
 TEST(YamlTextTest, AStringThatYamlWouldReadOtherwiseIsQuoted) {
-  Words words;
-  words.flag = false;
+  const Words words{.flag = false};
   const Words again = load_text<Words>(yaml_text(words), "words");
   EXPECT_EQ(again.text, words.text);
   EXPECT_FALSE(again.flag);

@@ -151,8 +151,7 @@ TEST(GrowingOscillationTest, FalseAlarmsOfAStableLoopAreRare) {
 }
 
 TEST(GrowingOscillationTest, AFloorAboveTheCeilingIsRefused) {
-  OscillationLimits limits;
-  limits.floor_rad = 0.2;
+  const OscillationLimits limits{.floor_rad = 0.2};
   EXPECT_THROW(GrowingOscillation{limits}, ConfigError);
 }
 

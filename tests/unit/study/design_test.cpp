@@ -70,8 +70,7 @@ TEST(ChooseImpedanceTest, KeepsItsBoundsAndLowersTheWorstCase) {
   EXPECT_LE(sut.effort, 1.5);
   EXPECT_GE(sut.passive_hz, 10.0);
   // More effort allowed is never worse.
-  ImpedanceBounds strong;
-  strong.most_effort = 3.0;
+  const ImpedanceBounds strong{.most_effort = 3.0};
   const auto stronger = choose_impedance(people, kBand, kSlow, {}, {}, strong);
   EXPECT_LT(stronger.worst, sut.worst);
   EXPECT_GT(stronger.effort, 1.5);

@@ -64,8 +64,7 @@ TEST_F(SelectionTest, TheDefaultRulesExcludeNobodyWhoIsComplete) {
 TEST_F(SelectionTest, ATrialThatLostMoreThanTheRuleAllowsGoesAndOneAtTheLimitStays) {
   people_[0].trials[1].lost_share = 0.02;
   people_[1].trials[1].lost_share = 0.0201;
-  experiment::Exclusion rules;
-  rules.least_completed_share = 0.5;
+  const experiment::Exclusion rules{.least_completed_share = 0.5};
   const auto lines = apply(rules);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("P02, session 01, trial 2: 0.0201 of its samples lost"));
@@ -86,8 +85,7 @@ TEST_F(SelectionTest, ARepetitionDoesNotStandForAMissingTrial) {
 
 TEST_F(SelectionTest, TooManyTrialsEndedEarlyExcludeThePerson) {
   people_[1].broken_trials = 3;
-  experiment::Exclusion rules;
-  rules.most_broken_trials = 3;
+  experiment::Exclusion rules{.most_broken_trials = 3};
   EXPECT_THAT(apply(rules), IsEmpty());
   rules.most_broken_trials = 2;
   EXPECT_THAT(apply(rules), ElementsAre(HasSubstr("P02: 3 trials ended early")));
@@ -95,8 +93,7 @@ TEST_F(SelectionTest, TooManyTrialsEndedEarlyExcludeThePerson) {
 
 TEST_F(SelectionTest, WhoCannotTrackOnAStandingPlatformIsExcluded) {
   people_.push_back(person_of("P04", 50.0, 0.19));
-  experiment::Exclusion rules;
-  rules.least_dwell_ratio_a = 0.2;
+  const experiment::Exclusion rules{.least_dwell_ratio_a = 0.2};
   EXPECT_THAT(apply(rules), ElementsAre(HasSubstr("P04: mean dwell ratio 0.19 in A")));
 }
 

@@ -104,10 +104,7 @@ TEST(RegionOptionsTest, AStopGivesNothing) {
 // Ratio and interval of two limits by hand: 10 over sqrt(8 * 12.5) = 1, 30 over sqrt(40 * 62.5) =
 // 0.6; the first interval meets its step, the second does not.
 TEST(AgreementTest, ComparesPredictionAndStep) {
-  Limit near;
-  near.predicted = {10.0, 9.0, 11.0};
-  near.stable_m_s2_rad = 8.0;
-  near.ended_m_s2_rad = 12.5;
+  const Limit near{.predicted = {10.0, 9.0, 11.0}, .stable_m_s2_rad = 8.0, .ended_m_s2_rad = 12.5};
   Limit far = near;
   far.predicted = {30.0, 29.0, 31.0};
   far.stable_m_s2_rad = 40.0;

@@ -127,8 +127,7 @@ TEST(VehicleTest, ALostStickIsHeldAndThenCountsAsCentred) {
   config.delay_s = 0.02;
   Vehicle sut(config);
   for (int n = 0; n < 100; ++n) sut.step(stick(0.1));
-  VehicleInput lost;
-  lost.share = 1.0;
+  const VehicleInput lost{.share = 1.0};
   for (std::int64_t n = 0; n < config.max_hold_ticks; ++n) {
     const VehicleMotion out = sut.step(lost);
     EXPECT_NEAR(out.acceleration_m_s2, 0.1 * config.gain_m_s2_rad, 1e-6);
