@@ -6,6 +6,11 @@
 namespace stillhand::cancellation::model_schedule_test {
 namespace {
 
+void expect_taken(const ModelSchedule::Due& due, Tick late_ticks = 0) {
+  EXPECT_TRUE(due.take);
+  EXPECT_EQ(due.late_ticks, late_ticks);
+}
+
 TEST(ModelScheduleTest, AModelIsTakenAtItsFirstTickAndOnce) {
   ModelSchedule sut;
   EXPECT_FALSE(sut.step(0).take);
@@ -13,9 +18,7 @@ TEST(ModelScheduleTest, AModelIsTakenAtItsFirstTickAndOnce) {
   EXPECT_EQ(sut.waits_for(), 250);
   for (Tick tick = 1; tick < 250; ++tick) ASSERT_FALSE(sut.step(tick).take) << tick;
   EXPECT_EQ(sut.in_use(), -1);
-  const ModelSchedule::Due due = sut.step(250);
-  EXPECT_TRUE(due.take);
-  EXPECT_EQ(due.late_ticks, 0);
+  expect_taken(sut.step(250));
   EXPECT_EQ(sut.in_use(), 0);
   EXPECT_EQ(sut.waits_for(), std::nullopt);
   for (Tick tick = 251; tick < 600; ++tick) ASSERT_FALSE(sut.step(tick).take) << tick;
@@ -26,18 +29,14 @@ TEST(ModelScheduleTest, ALostTickTakesTheModelWithTheNextSampleAndIsNotLate) {
   sut.step(0);
   sut.offer(3, 10);
   EXPECT_FALSE(sut.step(9).take);
-  const ModelSchedule::Due due = sut.step(13);
-  EXPECT_TRUE(due.take);
-  EXPECT_EQ(due.late_ticks, 0);
+  expect_taken(sut.step(13));
 }
 
 TEST(ModelScheduleTest, AModelThatIsReadyTooLateIsTakenAtOnceAndCounted) {
   ModelSchedule sut;
   for (Tick tick = 0; tick <= 12; ++tick) sut.step(tick);
   sut.offer(1, 10);  // ticks 10, 11 and 12 were answered without it
-  const ModelSchedule::Due due = sut.step(13);
-  EXPECT_TRUE(due.take);
-  EXPECT_EQ(due.late_ticks, 3);
+  expect_taken(sut.step(13), 3);
   EXPECT_EQ(sut.in_use(), 1);
 }
 
@@ -45,9 +44,7 @@ TEST(ModelScheduleTest, TheLastTickBeforeItsFirstOneIsInTime) {
   ModelSchedule sut;
   sut.step(9);
   sut.offer(1, 10);
-  const ModelSchedule::Due due = sut.step(10);
-  EXPECT_TRUE(due.take);
-  EXPECT_EQ(due.late_ticks, 0);
+  expect_taken(sut.step(10));
 }
 
 // A replay that begins behind the model's first tick publishes the model first.
@@ -79,9 +76,7 @@ TEST(ModelScheduleTest, AClockThatBeginsAgainMakesTheModelWaitAgain) {
   sut.offer(0, 1000);
   EXPECT_FALSE(sut.step(0).take);
   EXPECT_FALSE(sut.step(999).take);
-  const ModelSchedule::Due due = sut.step(1000);
-  EXPECT_TRUE(due.take);
-  EXPECT_EQ(due.late_ticks, 0);
+  expect_taken(sut.step(1000));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 namespace stillhand::device_rig::moteus::moteus_settings_test {
 
@@ -19,31 +20,21 @@ TEST(JudgeSettingTest, TheDriverIsOffAfterATimeoutOrTheDriveIsRefused) {
   }
 }
 
-TEST(JudgeSettingTest, TheDefaultWatchdogEndsACommandWithin100Ms) {
-  EXPECT_FALSE(judge_setting("servo.default_timeout_s", "0.100000", kLimits));
-  for (const char* wrong : {"nan", "0", "0.2", "-1", "inf"}) {
-    EXPECT_TRUE(judge_setting("servo.default_timeout_s", wrong, kLimits)) << wrong;
+// The watchdog ends a command within 100 ms, the current is at most that of the settings, a mode
+// without limits is refused, and the limits of the position lie outside of the stop.
+TEST(JudgeSettingTest, EverySettingHasItsLimits) {
+  const struct {
+    const char* name;
+    std::vector<const char*> good, wrong;
+  } cases[] = {{"servo.default_timeout_s", {"0.100000"}, {"nan", "0", "0.2", "-1", "inf"}},
+               {"servo.max_current_A", {"10.000000"}, {"10.5", "nan"}},
+               {"servo.fixed_voltage_mode", {"0"}, {"1"}},
+               {"servopos.position_min", {"nan", "-0.1"}, {"-0.01"}},
+               {"servopos.position_max", {"0.1"}, {"0.01", "ERR unknown"}}};
+  for (const auto& [name, good, wrong] : cases) {
+    for (const char* value : good) EXPECT_FALSE(judge_setting(name, value, kLimits)) << name;
+    for (const char* value : wrong) EXPECT_TRUE(judge_setting(name, value, kLimits)) << value;
   }
-}
-
-TEST(JudgeSettingTest, TheCurrentIsAtMostThatOfTheSettings) {
-  EXPECT_FALSE(judge_setting("servo.max_current_A", "10.000000", kLimits));
-  EXPECT_TRUE(judge_setting("servo.max_current_A", "10.5", kLimits));
-  EXPECT_TRUE(judge_setting("servo.max_current_A", "nan", kLimits));
-}
-
-TEST(JudgeSettingTest, AModeWithoutLimitsIsRefused) {
-  EXPECT_FALSE(judge_setting("servo.fixed_voltage_mode", "0", kLimits));
-  EXPECT_TRUE(judge_setting("servo.fixed_voltage_mode", "1", kLimits));
-}
-
-TEST(JudgeSettingTest, PositionLimitsLieOutsideOfTheStop) {
-  EXPECT_FALSE(judge_setting("servopos.position_min", "nan", kLimits));
-  EXPECT_FALSE(judge_setting("servopos.position_min", "-0.1", kLimits));
-  EXPECT_TRUE(judge_setting("servopos.position_min", "-0.01", kLimits));
-  EXPECT_FALSE(judge_setting("servopos.position_max", "0.1", kLimits));
-  EXPECT_TRUE(judge_setting("servopos.position_max", "0.01", kLimits));
-  EXPECT_TRUE(judge_setting("servopos.position_max", "ERR unknown", kLimits));
 }
 
 TEST(AskSettingTest, TheLongestNameFitsAFrame) {

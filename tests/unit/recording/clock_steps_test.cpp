@@ -72,6 +72,11 @@ std::pair<std::vector<std::int64_t>, std::vector<ClockStep>> read(const Bytes& f
   return {times_ms, sut.clock_steps()};
 }
 
+auto closed(Recorded& recorded) {
+  EXPECT_TRUE(recorded.writer.close().ok());
+  return read(recorded.sink.bytes());
+}
+
 std::vector<std::int64_t> counted(std::int64_t count) {
   std::vector<std::int64_t> times_ms;
   for (std::int64_t n = 0; n < count; ++n) times_ms.push_back(n);
@@ -106,8 +111,7 @@ TEST(ClockStepsTest, StepsThatTakeEachOtherBackAreFoundByTheOrderOfTheChunks) {
   Recorded recorded(0);
   const auto set = [](std::int64_t n) { return n >= 1000 && n < 2500 ? -2 * kSecond : 0; };
   for (std::int64_t n = 0; n < 4000; ++n) recorded.put(n, kStart + n * kMs + set(n));
-  ASSERT_TRUE(recorded.writer.close().ok());
-  const auto [times_ms, steps] = read(recorded.sink.bytes());
+  const auto [times_ms, steps] = closed(recorded);
   EXPECT_EQ(times_ms, counted(4000));
   EXPECT_EQ(steps.size(), 2u);
 }
@@ -120,8 +124,7 @@ TEST(ClockStepsTest, AMessageThatAnotherThreadQueuedLateKeepsItsPlace) {
     if (n == 1499) recorded.put(recorded.other, kStart + 1500 * kMs - kSecond, {});
     recorded.put(n, kStart + n * kMs - (n >= 1500 ? kSecond : 0));
   }
-  ASSERT_TRUE(recorded.writer.close().ok());
-  const auto [times_ms, steps] = read(recorded.sink.bytes());
+  const auto [times_ms, steps] = closed(recorded);
   EXPECT_EQ(steps.size(), 1u);
   EXPECT_EQ(times_ms[1499], 1500);
   EXPECT_EQ(times_ms[1503], 1499);
@@ -141,8 +144,7 @@ TEST(ClockStepsTest, APauseOrARecorderThatStoodStillIsNoStep) {
     for (std::int64_t n = 1000; n < 2000; ++n) put(n, 2000);  // a second's worth had waited
     for (std::int64_t n = 2001; n < 3000; ++n) put(n, n);
     for (std::int64_t n = 13'000; n < 14'000; ++n) put(n, n);  // nothing was sent for 10 s
-    ASSERT_TRUE(recorded.writer.close().ok());
-    const auto [times_ms, steps] = read(recorded.sink.bytes());
+    const auto [times_ms, steps] = closed(recorded);
     EXPECT_EQ(times_ms, want);
     EXPECT_TRUE(steps.empty());
   }
@@ -156,8 +158,7 @@ TEST(ClockStepsTest, ARecorderThatNamesItsClockIsBelieved) {
     want.push_back(1000 + n - (n >= 1000 ? 1000 : 0));
     recorded.put(n, kStart + want.back() * kMs);
   }
-  ASSERT_TRUE(recorded.writer.close().ok());
-  const auto [times_ms, steps] = read(recorded.sink.bytes());
+  const auto [times_ms, steps] = closed(recorded);
   EXPECT_EQ(times_ms, want);
   EXPECT_TRUE(steps.empty());
 }
@@ -168,8 +169,7 @@ TEST(ClockStepsTest, AStepAtTheEndIsDecidedByWhatTheRecorderNoted) {
     for (std::int64_t n = 0; n < 1100; ++n) {
       recorded.put(n, kStart + n * kMs + (n >= 1000 ? 10 * kSecond : 0));
     }
-    ASSERT_TRUE(recorded.writer.close().ok());
-    EXPECT_EQ(read(recorded.sink.bytes()).second.size(), noted_ns == 10 * kSecond ? 1u : 0u);
+    EXPECT_EQ(closed(recorded).second.size(), noted_ns == 10 * kSecond ? 1u : 0u);
   }
 }
 
@@ -177,8 +177,7 @@ TEST(ClockStepsTest, AStepAtTheEndIsDecidedByWhatTheRecorderNoted) {
 TEST(ClockStepsTest, AReplayShowsNoStep) {
   Recorded recorded(kSecond, {{"qos_profile", "stream_1khz"}, {"replayed", "true"}});
   for (std::int64_t n = 0; n < 2000; ++n) recorded.put(n, kStart + n * kMs * 3);
-  ASSERT_TRUE(recorded.writer.close().ok());
-  EXPECT_TRUE(read(recorded.sink.bytes()).second.empty());
+  EXPECT_TRUE(closed(recorded).second.empty());
 }
 
 TEST(ClockStepsTest, WithoutSamplesAStepBackLosesAnIntervalAtMost) {
@@ -186,8 +185,7 @@ TEST(ClockStepsTest, WithoutSamplesAStepBackLosesAnIntervalAtMost) {
   for (std::int64_t n = 0; n < 100; ++n) {
     recorded.put(recorded.other, kStart + n * 10 * kMs - (n >= 50 ? 3600 * kSecond : 0), {});
   }
-  ASSERT_TRUE(recorded.writer.close().ok());
-  const auto [times_ms, steps] = read(recorded.sink.bytes());
+  const auto [times_ms, steps] = closed(recorded);
   ASSERT_EQ(steps.size(), 1u);
   EXPECT_TRUE(std::ranges::is_sorted(times_ms));
   EXPECT_EQ(times_ms.back(), 980);
@@ -201,8 +199,7 @@ TEST(ClockStepsTest, TimesThatAreNoRecordersClockStayAsTheyAre) {
     want.push_back(1000 + n - 1000 * (n / 300 % 2));
     recorded.put(n, kStart + want.back() * kMs);
   }
-  ASSERT_TRUE(recorded.writer.close().ok());
-  const auto [times_ms, steps] = read(recorded.sink.bytes());
+  const auto [times_ms, steps] = closed(recorded);
   EXPECT_EQ(times_ms, want);
   EXPECT_TRUE(steps.empty());
 }
