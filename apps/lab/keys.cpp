@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "apps/lab/remote.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "services/bus/identity.hpp"
 #include "services/system/process/remark.hpp"
 
@@ -37,7 +38,7 @@ std::string keys_script(const std::filesystem::path& folder, const std::string& 
       "done\n"
       "[ \"$(cat authority.pem)\" = \"$(cat {})\" ] || "
       "{{ echo \"$PWD/authority.pem is another\"; exit 1; }}\n",
-      shell_word(folder.string()), files, here_document(authority));
+      report::in_shell_quotes(folder.string()), files, here_document(authority));
 }
 
 }  // namespace stillhand::lab

@@ -6,12 +6,15 @@
 #include <optional>
 #include <stdexcept>
 
+#include "apps/libraries/report/command_line.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/system/process/clock.hpp"
 
 namespace stillhand::lab {
 namespace {
+
+using report::in_shell_quotes;
 
 constexpr std::int64_t kPatience_ns = 30 * runtime::kNsPerSecond;  // with a host that is silent
 constexpr std::int64_t kPoll_ns = 5'000'000;
@@ -39,18 +42,6 @@ std::string end_mark(const std::string& text) {
 }
 
 }  // namespace
-
-std::string shell_word(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) {
-    if (c == '\'') {
-      out += "'\\''";
-    } else {
-      out += c;
-    }
-  }
-  return out + "'";
-}
 
 std::string here_document(const std::string& text) {
   const std::string end = end_mark(text);
@@ -130,16 +121,16 @@ void RemoteHost::check(const std::string& script, const std::string& want) {
 
 void RemoteHost::close() {
   if (folder_.empty()) return;
-  run("rm -r " + shell_word(folder_) + "\n");
+  run("rm -r " + in_shell_quotes(folder_) + "\n");
   folder_.clear();
 }
 
 void RemoteHost::put(const std::map<std::string, std::string>& files) {
-  std::string script = fmt::format("set -e\numask 077\ncd {}\n", shell_word(folder_));
+  std::string script = fmt::format("set -e\numask 077\ncd {}\n", in_shell_quotes(folder_));
   for (const auto& [name, text] : files) {
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
-    if (!folder.empty()) script += fmt::format("mkdir -p {}\n", shell_word(folder.string()));
-    script += fmt::format("cat > {} {}", shell_word(name), here_document(text));
+    if (!folder.empty()) script += fmt::format("mkdir -p {}\n", in_shell_quotes(folder.string()));
+    script += fmt::format("cat > {} {}", in_shell_quotes(name), here_document(text));
   }
   run(script);
 }
@@ -148,7 +139,7 @@ void RemoteHost::fetch(const std::string& name, const std::filesystem::path& to)
   // Under its name only once it is whole.
   const std::filesystem::path part = to.string() + ".part";
   try {
-    run("cat " + shell_word((std::filesystem::path(folder_) / name).string()) + "\n", part);
+    run("cat " + in_shell_quotes((std::filesystem::path(folder_) / name).string()) + "\n", part);
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
@@ -159,8 +150,9 @@ void RemoteHost::fetch(const std::string& name, const std::filesystem::path& to)
 
 Launch RemoteHost::on_it(const Launch& local) const {
   Launch launch = local;
-  std::string command = shell_word((host_.prefix / "bin" / local.executable.filename()).string());
-  for (const std::string& word : local.arguments) command += ' ' + shell_word(word);
+  std::string command =
+      in_shell_quotes((host_.prefix / "bin" / local.executable.filename()).string());
+  for (const std::string& word : local.arguments) command += ' ' + in_shell_quotes(word);
   launch.host = host_.name;
   launch.executable = host_.start.front();
   launch.arguments = to_shell(host_);

@@ -61,9 +61,6 @@ class RemoteHost {
   std::string folder_;
 };
 
-/// Quotes a word for a POSIX shell.
-std::string shell_word(const std::string& word);
-
 /// A here document (`<<'END'`) by which a command reads this text.  A last line without a newline
 /// gets one.
 std::string here_document(const std::string& text);

@@ -4,15 +4,20 @@
 #include <fstream>
 #include <string_view>
 
+#include "apps/libraries/report/text/text.hpp"
+
 namespace stillhand::report {
 
 std::string quoted_for_shell(const std::string& word) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char each : word) text += each == '\'' ? std::string("'\\''") : std::string(1, each);
-  return text + "'";
+  const bool plain = !word.empty() && word.find_first_not_of(kPlain) == std::string::npos;
+  return plain ? word : in_shell_quotes(word);
+}
+
+std::string in_shell_quotes(std::string word) {
+  replace_all(word, "'", "'\\''");
+  return "'" + word + "'";
 }
 
 std::string command_line() {

@@ -11,5 +11,7 @@ std::string command_line();
 
 /// A word as a POSIX shell reads it back: in single quotes if it needs them.
 std::string quoted_for_shell(const std::string& word);
+/// The same, always in single quotes.
+std::string in_shell_quotes(std::string word);
 
 }  // namespace stillhand::report

@@ -11,6 +11,7 @@
 #include <regex>
 
 #include "apps/lab/keys.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/wait.hpp"
@@ -49,7 +50,8 @@ std::string complaint(const SampleFolder& folder, const std::string& script) {
 /// What the shell makes of `cat` with this behind it.
 std::string read_back(const SampleFolder& folder, const std::string& behind) {
   const fs::path file = folder.path() / "read_back";
-  EXPECT_EQ(complaint(folder, "cat > " + shell_word(file.string()) + " " + behind), "accepted");
+  EXPECT_EQ(complaint(folder, "cat > " + report::in_shell_quotes(file.string()) + " " + behind),
+            "accepted");
   return text_of(file);
 }
 
@@ -58,8 +60,8 @@ TEST(ShellWordTest, AShellReadsItBackAsOneWord) {
   for (const std::string word :
        {"plain", "two words", "it's", "$HOME `id` \"x\" \\ !", "a\nb", ""}) {
     const fs::path file = folder.path() / "word";
-    EXPECT_EQ(complaint(folder, "printf '<%s>' " + shell_word(word) + " > " +
-                                    shell_word(file.string()) + "\n"),
+    EXPECT_EQ(complaint(folder, "printf '<%s>' " + report::in_shell_quotes(word) + " > " +
+                                    report::in_shell_quotes(file.string()) + "\n"),
               "accepted");
     EXPECT_EQ(text_of(file), "<" + word + ">");
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/libraries/measurement/tables/choice.hpp"
+#include "apps/libraries/report/command_line.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -91,13 +92,6 @@ std::string unit_for(const ColumnHead& column, const std::string& name) {
   return wanted;
 }
 
-// What a shell keeps as one word.
-std::string shell_word(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 }  // namespace
 
 std::string reference_to(const TableHead& head, std::size_t number) {
@@ -139,7 +133,8 @@ Mapping guess_mapping(const TableHead& head) {
 
 std::string command_words(const Mapping& mapping) {
   std::string words = "--map";
-  for (const ColumnWish& wish : mapping.columns) words += " " + shell_word(wish_text(wish));
+  for (const ColumnWish& wish : mapping.columns)
+    words += " " + report::in_shell_quotes(wish_text(wish));
   if (mapping.rate_hz) words += fmt::format(" --sample-rate {}", *mapping.rate_hz);
   return words;
 }
