@@ -81,7 +81,7 @@ void Bus::Impl::report(const Bus::Options& options, const Sources::Second& secon
     return !endpoint->writes() && &endpoint->topic() == second.topic;
   });
   if (!reads || !options.on_incident) return;
-  BusIncident incident{BusIncident::Kind::kSecondWriter, second.topic, {}, 0.0, second.id};
+  BusIncident incident{stillhand_msgs::EVENT_SECOND_WRITER, second.topic, {}, 0.0, second.id};
   second.name.copy(incident.peer, sizeof(incident.peer) - 1);
   options.on_incident(incident);
 }

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "idl/session.h"
 #include "idl/topics.hpp"
 #include "services/bus/source.hpp"
 #include "services/core/contract/tick.hpp"
@@ -51,20 +52,12 @@ struct Arrival {
 /// An incident at an endpoint, reported from DDS's own threads.  Plain, so that it can leave a
 /// receiving thread without lock or allocation.
 struct BusIncident {
-  enum class Kind : std::uint8_t {
-    kDeadlineMissed,
-    kCycleMissed,
-    kTicksLost,
-    kLivelinessLost,
-    kLivelinessRecovered,
-    kIncompatibleQos,
-    kSecondWriter
-  };
-  Kind kind;
+  stillhand_msgs::EventKind kind;
   const topics::Topic* topic;  ///< never null
   char peer[32];               ///< service concerned, where known; zero-terminated
-  double by_us;                ///< [us] how much too late; of kTicksLost, how long the gap is
-  /// QoS policy of kIncompatibleQos, participant of kSecondWriter; never null, lives as the Bus.
+  double by_us;                ///< [us] how much too late; of EVENT_TICKS_LOST, how long the gap is
+  /// QoS policy of EVENT_INCOMPATIBLE_QOS, participant of EVENT_SECOND_WRITER; never null, lives as
+  /// the Bus.
   const char* policy;
 };
 

@@ -71,14 +71,14 @@ void Endpoint::note_match(const ertps::InstanceHandle_t& peer, int change) {
 }
 
 void Endpoint::note_incompatible(std::uint32_t policy) {
-  note_incident(BusIncident::Kind::kIncompatibleQos, "", 0.0, policy_name(policy));
+  note_incident(stillhand_msgs::EVENT_INCOMPATIBLE_QOS, "", 0.0, policy_name(policy));
 }
 
 std::string Endpoint::sole_writer() const {
   return topic_.writers.size() == 1 ? std::string(topic_.writers.front()) : "";
 }
 
-void Endpoint::note_incident(BusIncident::Kind kind, const std::string& peer, double by_us,
+void Endpoint::note_incident(stillhand_msgs::EventKind kind, const std::string& peer, double by_us,
                              const char* policy) const {
   if (!options_.on_incident) return;
   BusIncident incident{kind, &topic_, {}, by_us, policy};
@@ -174,7 +174,7 @@ void ReaderEndpoint::take_all() {
     samples_.fetch_add(1, std::memory_order_relaxed);
     last_arrival_ns_.store(arrival.received_ns, std::memory_order_relaxed);
     if (&topic_ == &topics::kServiceStatus && peers_.note_sample(info.publication_handle)) {
-      note_incident(BusIncident::Kind::kLivelinessRecovered,
+      note_incident(stillhand_msgs::EVENT_LIVELINESS_RECOVERED,
                     peers_.service_of(info.publication_handle), 0.0);
     }
     if (topic_.pattern == topics::Pattern::kStream1khz && clock.tick >= 0) {
@@ -188,11 +188,11 @@ void ReaderEndpoint::supervise(Tick tick, std::int64_t sent_ns, std::int64_t arr
   const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
   const auto verdict = monitor_.step(tick, difference_ns(sent_ns, ahead_ns), arrived_ns);
   if (verdict.lost > 0) {
-    note_incident(BusIncident::Kind::kTicksLost, sole_writer(),
+    note_incident(stillhand_msgs::EVENT_TICKS_LOST, sole_writer(),
                   static_cast<double>(verdict.lost * monitor_.period_us()));
   }
   if (verdict.late_by_us > 0) {
-    note_incident(BusIncident::Kind::kCycleMissed, sole_writer(),
+    note_incident(stillhand_msgs::EVENT_CYCLE_MISSED, sole_writer(),
                   static_cast<double>(verdict.late_by_us));
   }
   // A tenth of a second between snapshots: percentiles cost 200 additions.
@@ -225,7 +225,7 @@ void ReaderEndpoint::on_subscription_matched(edds::DataReader* /*reader*/,
   if (status.current_count_change < 0 && &topic_ == &topics::kServiceStatus) {
     const std::string peer = peers_.service_of(status.last_publication_handle);
     if (peers_.set_alive(status.last_publication_handle, false)) {
-      note_incident(BusIncident::Kind::kLivelinessLost, peer, 0.0);
+      note_incident(stillhand_msgs::EVENT_LIVELINESS_LOST, peer, 0.0);
     }
   }
 }
@@ -236,7 +236,7 @@ void ReaderEndpoint::on_requested_deadline_missed(
   if (!supervising_.load(std::memory_order_relaxed) || !has_living_writer()) return;
   deadline_misses_.fetch_add(status.total_count_change, std::memory_order_relaxed);
   const std::int64_t silent_ns = monotonic_ns() - last_arrival_ns_.load(std::memory_order_relaxed);
-  note_incident(BusIncident::Kind::kDeadlineMissed, sole_writer(),
+  note_incident(stillhand_msgs::EVENT_DEADLINE_MISSED, sole_writer(),
                 static_cast<double>(silent_ns) * 1e-3);
 }
 
@@ -262,8 +262,8 @@ void ReaderEndpoint::on_liveliness_changed(edds::DataReader* /*reader*/,
     if (!peers_.set_alive(status.last_publication_handle, alive)) return;
   }
   note_incident(
-      alive ? BusIncident::Kind::kLivelinessRecovered : BusIncident::Kind::kLivelinessLost, peer,
-      0.0);
+      alive ? stillhand_msgs::EVENT_LIVELINESS_RECOVERED : stillhand_msgs::EVENT_LIVELINESS_LOST,
+      peer, 0.0);
 }
 
 void ReaderEndpoint::on_requested_incompatible_qos(

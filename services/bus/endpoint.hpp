@@ -52,7 +52,7 @@ class Endpoint {
  protected:
   void note_match(const ertps::InstanceHandle_t& peer, int change);
   void note_incompatible(std::uint32_t policy);
-  void note_incident(BusIncident::Kind kind, const std::string& peer, double by_us,
+  void note_incident(stillhand_msgs::EventKind kind, const std::string& peer, double by_us,
                      const char* policy = "") const;
   /// The service that writes the topic, by the catalogue; empty: there are several.  Its name fits
   /// into the string itself, so nothing is allocated.

@@ -27,26 +27,6 @@ namespace {
 constexpr std::chrono::milliseconds kLookPeriod{20};  // StallWatch::look()
 constexpr int kLooks = 5;                             // for each StallWatch::step()
 
-stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
-  switch (kind) {
-    case BusIncident::Kind::kDeadlineMissed:
-      return stillhand_msgs::EVENT_DEADLINE_MISSED;
-    case BusIncident::Kind::kCycleMissed:
-      return stillhand_msgs::EVENT_CYCLE_MISSED;
-    case BusIncident::Kind::kTicksLost:
-      return stillhand_msgs::EVENT_TICKS_LOST;
-    case BusIncident::Kind::kLivelinessLost:
-      return stillhand_msgs::EVENT_LIVELINESS_LOST;
-    case BusIncident::Kind::kLivelinessRecovered:
-      return stillhand_msgs::EVENT_LIVELINESS_RECOVERED;
-    case BusIncident::Kind::kIncompatibleQos:
-      return stillhand_msgs::EVENT_INCOMPATIBLE_QOS;
-    case BusIncident::Kind::kSecondWriter:
-      return stillhand_msgs::EVENT_SECOND_WRITER;
-  }
-  return stillhand_msgs::EVENT_NOTE;
-}
-
 void warn_of_expiry(const ServiceOptions& options) {
   if (options.security.empty()) return;
   const std::string warning = expiry_warning({options.security, options.service});
@@ -89,7 +69,7 @@ Service::Service(ServiceOptions options, Stop& stop)
     bus_options.experiment = participant_of(options_.experiment, "--experiment");
   }
   bus_options.on_incident = [this](const BusIncident& incident) {
-    Note note{event_kind(incident.kind),
+    Note note{incident.kind,
               stillhand_msgs::CODE_NONE,
               incident.topic,
               tick_.load(std::memory_order_relaxed),

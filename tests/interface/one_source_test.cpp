@@ -58,7 +58,7 @@ struct Rig {
   }
   Bus::Options complete(Bus::Options options) {
     options.on_incident = [this](const BusIncident& incident) {
-      if (incident.kind != BusIncident::Kind::kSecondWriter) return;
+      if (incident.kind != stillhand_msgs::EVENT_SECOND_WRITER) return;
       const std::lock_guard lock(mutex);
       second.push_back(std::string(incident.topic->name) + " " + incident.peer);
     };

@@ -62,7 +62,7 @@ Shell::Shell(runtime::Service& service, Plant& plant, const MotorConfig& motor)
     announced_.store({trial, message.session()});
   });
   service.on_incident([this](const runtime::BusIncident& incident) {
-    if (incident.kind == runtime::BusIncident::Kind::kDeadlineMissed &&
+    if (incident.kind == stillhand_msgs::EVENT_DEADLINE_MISSED &&
         incident.topic == &topics::kMotorCommand) {
       motor_deadline_missed_.store(true, std::memory_order_relaxed);
     }
