@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "services/core/signal/random.hpp"
+
 namespace stillhand::rig {
 namespace {
 
@@ -10,15 +12,10 @@ namespace {
 constexpr double kTailBegin = 3.442619855899;
 constexpr double kLayerArea = 9.91256303526217e-3;
 
-std::mt19937_64 seeded(std::uint64_t seed, std::uint64_t stream) {
-  std::seed_seq mix{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                    static_cast<std::uint32_t>(stream), static_cast<std::uint32_t>(stream >> 32)};
-  return std::mt19937_64(mix);
-}
-
 }  // namespace
 
-SensorNoise::SensorNoise(std::uint64_t seed, std::uint64_t stream) : engine_(seeded(seed, stream)) {
+SensorNoise::SensorNoise(std::uint64_t seed, std::uint64_t stream)
+    : engine_(signal::seeded_engine(seed, stream)) {
   double height = std::exp(-0.5 * kTailBegin * kTailBegin);
   edge_[0] = kLayerArea / height;
   edge_[1] = kTailBegin;
