@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/libraries/measurement/sample_faults.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -205,9 +206,7 @@ double uneven_rows(const std::vector<double>& values, double rate_hz) {
   const std::vector<double> e = differences_of(values, 1);
   std::vector<double> sizes;
   for (const double each : e) sizes.push_back(std::abs(each));
-  const auto middle = sizes.begin() + std::ssize(sizes) / 2;
-  std::ranges::nth_element(sizes, middle);
-  const double least = kLarge * 1.4826 * *middle;
+  const double least = kLarge * 1.4826 * signal::middle_of(std::move(sizes));
   if (least == 0.0) return 0.0;  // runs of equal values: held_rows()
   double jumps = 0.0, up = 0.0, neighbours = 0.0, onwards = 0.0, squares = 0.0, before = 0.0;
   for (std::size_t i = 0; i < e.size(); ++i) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/signal/moments.hpp"
+
 namespace stillhand::measurement {
 namespace {
 
@@ -130,9 +132,7 @@ void judge(const std::vector<double>& time_s, RowCount& out) {
       distances.push_back(std::abs(late(i) - mean));
     }
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::ranges::nth_element(distances, middle);
-  out.median_periods = *middle;
+  out.median_periods = signal::middle_of(distances);
 }
 
 bool agree(double period_s, double other_s) { return std::abs(period_s / other_s - 1.0) < 0.01; }

@@ -12,6 +12,7 @@
 #include "apps/libraries/session/loop.hpp"
 #include "apps/libraries/session/measured_ticks.hpp"
 #include "services/core/rig/parts/sensors.hpp"
+#include "services/core/signal/moments.hpp"
 #include "services/messages/cancellation/codec.hpp"
 #include "services/messages/sensing/codec.hpp"
 
@@ -121,11 +122,8 @@ double apart(const std::vector<Message>& messages, const Trial& trial,
     values.push_back(recorded(message));
     differ.push_back(std::abs(values.back() - of(answer->answer)));
   }
-  if (differ.empty()) return 0.0;
-  const auto middle = differ.begin() + static_cast<std::ptrdiff_t>(differ.size() / 2);
-  std::ranges::nth_element(differ, middle);
   const double whole = rms(values);
-  return whole > 0.0 ? *middle / whole : 0.0;
+  return whole > 0.0 ? signal::middle_of(std::move(differ)) / whole : 0.0;
 }
 
 /// The settings are not those of the session: of its canceller or its sensors, or, since a command

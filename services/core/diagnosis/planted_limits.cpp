@@ -13,6 +13,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/examples.hpp"
 #include "services/core/diagnosis/selection.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -178,9 +179,7 @@ double typical_limit(const std::vector<PlantedLimit>& limits) {
   for (const PlantedLimit& each : limits) {
     if (std::isfinite(each.half)) sizes.push_back(each.half * each.beyond_linear);
   }
-  if (sizes.empty()) return 0.0;
-  std::ranges::sort(sizes);
-  return sizes[sizes.size() / 2];
+  return signal::middle_of(sizes);
 }
 
 }  // namespace stillhand::diagnosis

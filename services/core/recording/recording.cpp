@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "services/core/contract/expects.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::recording {
 
@@ -19,10 +20,7 @@ void estimate_timing(Recording& recording) {
   std::vector<double> steps_s(time_s.size() - 1);
   for (std::size_t i = 0; i < steps_s.size(); ++i) steps_s[i] = time_s[i + 1] - time_s[i];
 
-  std::vector<double> ordered_s = steps_s;
-  const auto middle = ordered_s.begin() + static_cast<std::ptrdiff_t>(ordered_s.size() / 2);
-  std::nth_element(ordered_s.begin(), middle, ordered_s.end());
-  const double median_s = *middle;
+  const double median_s = signal::middle_of(steps_s);
   double sum_s = 0.0;
   std::size_t count = 0;
   for (const double step_s : steps_s) {

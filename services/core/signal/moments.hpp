@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 namespace stillhand::signal {
 
@@ -28,6 +31,14 @@ inline double rms(std::span<const double> values) noexcept {
 /// Mean square about the mean, over N and not N - 1; NaN without values.
 inline double variance(std::span<const double> values) noexcept {
   return mean_square(values, mean(values));
+}
+
+/// The middle value by size, the upper one of two; 0 without values.
+inline double middle_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
 }  // namespace stillhand::signal

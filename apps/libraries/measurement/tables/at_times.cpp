@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/libraries/measurement/tables/at_times.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -54,10 +55,7 @@ double longest_bridge_s(const std::vector<double>& time_s) {
   constexpr double kSteps = 4.0;
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < time_s.size(); ++i) steps_s.push_back(time_s[i] - time_s[i - 1]);
-  if (steps_s.empty()) return 0.0;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::ranges::nth_element(steps_s, middle);
-  return kSteps * *middle;
+  return kSteps * signal::middle_of(steps_s);
 }
 
 }  // namespace stillhand::measurement

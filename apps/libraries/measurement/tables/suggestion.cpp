@@ -8,6 +8,7 @@
 #include "apps/libraries/measurement/tables/choice.hpp"
 #include "apps/libraries/measurement/tables/guess.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -23,9 +24,8 @@ std::string likely_time_unit(TableFile& file, const std::string& from) {
     }
     if (steps.empty()) return "s";
     if (std::ranges::all_of(steps, [](double step) { return step == 1.0; })) return {};
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::ranges::nth_element(steps, middle);
-    return *middle < 1.0 ? "s" : *middle < 1e3 ? "ms" : *middle < 1e6 ? "us" : "ns";
+    const double step = signal::middle_of(steps);
+    return step < 1.0 ? "s" : step < 1e3 ? "ms" : step < 1e6 ? "us" : "ns";
   } catch (const ConfigError&) {
     return "s";  // a guess for a message about something else
   }

@@ -173,10 +173,9 @@ Spread spread_of(const Screening& screening) {
     result.time_s.push_back(
         screening.signals().time_s()[static_cast<std::size_t>(first + rows / 2)]);
   }
-  std::vector<double> sorted = result.rms;
-  std::ranges::sort(sorted);
-  if (!sorted.empty()) {
-    result.largest_ratio = sorted.back() / std::max(sorted[sorted.size() / 2], 1e-300);
+  if (!result.rms.empty()) {
+    result.largest_ratio =
+        std::ranges::max(result.rms) / std::max(signal::middle_of(result.rms), 1e-300);
   }
   return result;
 }

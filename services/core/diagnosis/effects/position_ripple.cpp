@@ -6,6 +6,7 @@
 #include "services/core/diagnosis/effects/kinds.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/fitting/line_search.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -101,10 +102,9 @@ std::vector<Proposal> PositionRipple::proposed(const Screening& screening) const
     for (std::size_t n = 1; n < signal.values.size(); ++n) {
       steps.push_back(std::abs(signal.values[n] - signal.values[n - 1]));
     }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    if (!(range > 0.0) || !(*middle > 0.0)) continue;
-    const double highest = std::min(kMostPeriods / range, 1.0 / (kSamplesPerPeriod * *middle));
+    const double step = signal::middle_of(steps);
+    if (!(range > 0.0) || !(step > 0.0)) continue;
+    const double highest = std::min(kMostPeriods / range, 1.0 / (kSamplesPerPeriod * step));
     for (const Line& line :
          strongest_lines(signal.values, residual, kFewestPeriods / range, highest, kLines)) {
       const auto propose = [&](const char* form, double frequency) {

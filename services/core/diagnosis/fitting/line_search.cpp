@@ -7,6 +7,8 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
+#include "services/core/signal/moments.hpp"
+
 namespace stillhand::diagnosis {
 namespace {
 
@@ -18,11 +20,8 @@ constexpr std::size_t kSurroundings = 60;  // lines on each side
 double median_around(const std::vector<double>& power, std::size_t at) {
   const std::size_t first = at > kSurroundings ? at - kSurroundings : 0;
   const std::size_t end = std::min(power.size(), at + kSurroundings + 1);
-  std::vector<double> part(power.begin() + static_cast<std::ptrdiff_t>(first),
-                           power.begin() + static_cast<std::ptrdiff_t>(end));
-  const auto middle = part.begin() + static_cast<std::ptrdiff_t>(part.size() / 2);
-  std::nth_element(part.begin(), middle, part.end());
-  return *middle;
+  return signal::middle_of({power.begin() + static_cast<std::ptrdiff_t>(first),
+                            power.begin() + static_cast<std::ptrdiff_t>(end)});
 }
 
 }  // namespace
