@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/device_rig/fdcanusb_line.hpp"
 
+#include <charconv>
 #include <optional>
 
 namespace stillhand::device_rig::moteus {
@@ -9,22 +10,11 @@ namespace {
 constexpr std::string_view kDigits = "0123456789abcdef";
 constexpr std::uint8_t kPolynomial = 0x97;
 
-int digit(char c) noexcept {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
 std::optional<std::uint32_t> number(std::string_view text) noexcept {
-  if (text.empty() || text.size() > 8) return std::nullopt;
   std::uint32_t value = 0;
-  for (const char c : text) {
-    const int each = digit(c);
-    if (each < 0) return std::nullopt;
-    value = value << 4 | static_cast<std::uint32_t>(each);
-  }
-  return value;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && text.size() <= 8 ? std::optional(value) : std::nullopt;
 }
 
 /// Takes the first word off a line.
@@ -57,10 +47,9 @@ class LineWriter {
 bool read_payload(std::string_view digits, Frame& frame) noexcept {
   if (digits.size() % 2 != 0 || digits.size() / 2 > Frame::kMost) return false;
   for (std::size_t i = 0; i < digits.size(); i += 2) {
-    const int high = digit(digits[i]);
-    const int low = digit(digits[i + 1]);
-    if (high < 0 || low < 0) return false;
-    frame.bytes[frame.size++] = static_cast<std::uint8_t>(high << 4 | low);
+    const auto each = number(digits.substr(i, 2));
+    if (!each) return false;
+    frame.bytes[frame.size++] = static_cast<std::uint8_t>(*each);
   }
   return true;
 }
