@@ -18,6 +18,7 @@
 #include "services/core/identification/polynomial.hpp"
 #include "services/core/identification/rate_conversion.hpp"
 #include "services/core/signal/decompositions.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
@@ -172,9 +173,7 @@ std::vector<double> impulse_response(const std::vector<double>& c, const std::ve
 }  // namespace
 
 Complex polynomial_at(const std::vector<double>& c, double turn_rad) {
-  Complex sum = 0.0;
-  for (std::size_t i = c.size(); i-- > 0;) sum = sum * std::polar(1.0, -turn_rad) + c[i];
-  return sum;
+  return signal::polynomial_at(c, std::polar(1.0, -turn_rad));
 }
 
 std::vector<std::vector<double>> possible_denominators(const diagnosis::Model& model) {

@@ -54,12 +54,6 @@ Target target(const DifferenceModel& model, const ConversionBand& band) {
   return out;
 }
 
-Complex value(const Polynomial& polynomial, Complex v) {
-  Complex sum = 0.0;
-  for (std::size_t i = polynomial.size(); i-- > 0;) sum = sum * v + polynomial[i];
-  return sum;
-}
-
 // Least squares with real unknowns: two rows a frequency; columns scaled to norm 1.
 Eigen::VectorXd solve_real(const Eigen::MatrixXcd& matrix, const Eigen::VectorXcd& right) {
   Eigen::MatrixXd stacked(2 * matrix.rows(), matrix.cols());
@@ -80,7 +74,7 @@ Polynomial next_denominator(const Target& want, const Polynomial& before, Eigen:
   for (Eigen::Index row = 0; row < rows; ++row) {
     const auto k = static_cast<std::size_t>(row);
     const Complex v(0.0, want.v[k]);
-    const double weight = want.weight[k] / std::abs(value(before, v));
+    const double weight = want.weight[k] / std::abs(signal::polynomial_at(before, v));
     Complex power = weight;
     for (Eigen::Index i = 0; i <= order; ++i) {
       matrix(row, i) = power;
@@ -134,7 +128,7 @@ Polynomial best_numerator(const Target& want, const Polynomial& denominator) {
   for (Eigen::Index row = 0; row < rows; ++row) {
     const auto k = static_cast<std::size_t>(row);
     const Complex v(0.0, want.v[k]);
-    Complex power = want.weight[k] / value(denominator, v);
+    Complex power = want.weight[k] / signal::polynomial_at(denominator, v);
     for (Eigen::Index i = 0; i < columns; ++i, power *= v) matrix(row, i) = power;
     right(row) = want.weight[k] * want.h[k];
   }

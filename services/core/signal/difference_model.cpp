@@ -48,16 +48,16 @@ std::vector<std::complex<double>> poles(const DifferenceModel& model) {
   return {values.begin(), values.end()};
 }
 
+std::complex<double> polynomial_at(const std::vector<double>& c, std::complex<double> x) noexcept {
+  std::complex<double> sum = 0.0;
+  for (std::size_t i = c.size(); i-- > 0;) sum = sum * x + c[i];
+  return sum;
+}
+
 std::complex<double> response_at(const DifferenceModel& model, double frequency_hz) noexcept {
   const double angle_rad = 2.0 * std::numbers::pi * frequency_hz / model.rate_hz;
   const std::complex<double> back(std::cos(angle_rad), -std::sin(angle_rad));
-  std::complex<double> above = 0.0;
-  std::complex<double> below = 0.0;
-  for (std::size_t i = model.denominator.size(); i-- > 0;) {
-    above = above * back + model.numerator[i];
-    below = below * back + model.denominator[i];
-  }
-  return above / below;
+  return polynomial_at(model.numerator, back) / polynomial_at(model.denominator, back);
 }
 
 std::vector<double> simulated(const DifferenceModel& model,

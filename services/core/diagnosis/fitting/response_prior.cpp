@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "services/core/diagnosis/model/effect_kind.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -16,14 +17,9 @@ using Complex = std::complex<double>;
 constexpr std::size_t kLines = 32;  // an input
 constexpr double kLowest = 0.1;     // of the lower edge of the band
 
-Complex polynomial(const std::vector<double>& coefficients, const Complex& step) {
-  Complex sum = 0.0;
-  for (auto c = coefficients.rbegin(); c != coefficients.rend(); ++c) sum = sum * step + *c;
-  return sum;
-}
-
 Complex response_at(const Body& body, std::size_t input, const Complex& step) {
-  return polynomial(body.numerators[input], step) / polynomial(body.denominator, step);
+  return signal::polynomial_at(body.numerators[input], step) /
+         signal::polynomial_at(body.denominator, step);
 }
 
 // From a tenth of the band's lower edge to half the rate, evenly on a logarithmic axis.
@@ -138,8 +134,8 @@ double ResponsePrior::error(const Model& model) const {
         std::norm(line.weight * (line.response - response_at(model.body, line.input, line.step)));
   }
   visit_paths(model, [&](const auto& coefficients, Eigen::Index, const PathLine& line) {
-    sum += std::norm(line.weight * polynomial(coefficients, 1.0 - line.step) /
-                     polynomial(model.body.denominator, line.step));
+    sum += std::norm(line.weight * signal::polynomial_at(coefficients, 1.0 - line.step) /
+                     signal::polynomial_at(model.body.denominator, line.step));
   });
   return sum;
 }
@@ -159,8 +155,8 @@ void ResponsePrior::add_lines_of_paths(const Model& model, Eigen::MatrixXd& gram
   visit_paths(model, [&](const auto& coefficients, Eigen::Index at, const PathLine& line) {
     row.setZero();
     const Complex difference = 1.0 - line.step;
-    const Complex denominator = polynomial(model.body.denominator, line.step);
-    const Complex response = polynomial(coefficients, difference) / denominator;
+    const Complex denominator = signal::polynomial_at(model.body.denominator, line.step);
+    const Complex response = signal::polynomial_at(coefficients, difference) / denominator;
     Complex power = line.weight / denominator;
     for (std::size_t i = 0; i < coefficients.size(); ++i) {
       row[at + static_cast<Eigen::Index>(i)] = power;
@@ -182,7 +178,7 @@ void ResponsePrior::add_lines_of_body(const Body& body, Eigen::MatrixXd& gram) c
   for (const Line& line : lines_) {
     row.setZero();
     const Complex difference = 1.0 - line.step;
-    const Complex denominator = polynomial(body.denominator, line.step);
+    const Complex denominator = signal::polynomial_at(body.denominator, line.step);
     const Complex response = response_at(body, line.input, line.step);
     // B = sum_i d_i D^i and A = 1 + q^-1 sum_j g_j D^j, Eq. DG-8.
     Eigen::Index at = 1;  // behind the offset

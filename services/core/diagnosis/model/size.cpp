@@ -5,15 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/core/signal/difference_model.hpp"
+
 namespace stillhand::diagnosis {
 namespace {
-
-// By Horner's scheme.
-std::complex<double> sum_of_powers(const std::vector<double>& c, std::complex<double> x) {
-  std::complex<double> sum = 0.0;
-  for (std::size_t i = c.size(); i-- > 0;) sum = sum * x + c[i];
-  return sum;
-}
 
 std::complex<double> late_by_one(double frequency_hz, double rate_hz) {
   return std::polar(1.0, -2.0 * std::numbers::pi * frequency_hz / rate_hz);
@@ -23,12 +18,12 @@ std::complex<double> late_by_one(double frequency_hz, double rate_hz) {
 
 std::complex<double> polynomial_at(const std::vector<double>& c, double frequency_hz,
                                    double rate_hz) {
-  return sum_of_powers(c, late_by_one(frequency_hz, rate_hz));
+  return signal::polynomial_at(c, late_by_one(frequency_hz, rate_hz));
 }
 
 std::complex<double> difference_polynomial_at(const std::vector<double>& d, double frequency_hz,
                                               double rate_hz) {
-  return sum_of_powers(d, 1.0 - late_by_one(frequency_hz, rate_hz));
+  return signal::polynomial_at(d, 1.0 - late_by_one(frequency_hz, rate_hz));
 }
 
 std::complex<double> through_body_at(const SizeCase& at, double frequency_hz) {

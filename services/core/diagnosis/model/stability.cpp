@@ -81,10 +81,7 @@ bool poles_inside(const Polynomial& denominator) {
 }
 
 std::complex<double> at(const Polynomial& c, double turn_rad) {
-  const std::complex<double> back = std::polar(1.0, -turn_rad);
-  std::complex<double> sum = 0.0;
-  for (std::size_t i = c.size(); i-- > 0;) sum = sum * back + c[i];
-  return sum;
+  return signal::polynomial_at(c, std::polar(1.0, -turn_rad));
 }
 
 // Eq. DG-57 c: the circle criterion for differences of two runs.
