@@ -71,8 +71,8 @@ std::string chances(const diagnosis::DetectionLines& lines) {
   std::string text;
   const auto add = [&text](const char* name, const diagnosis::LineGroup& group) {
     if (group.empty()) return;
-    text += (text.empty() ? "" : "; ") + std::string(name) + " " + percent(group.share) + " (p " +
-            p_value(group.p) + ")";
+    text += (text.empty() ? "" : "; ") + std::string(name) + " " + percent(group.share, 1) +
+            " (p " + p_value(group.p) + ")";
   };
   add("odd lines", lines.odd);
   add("even lines", lines.even);

@@ -35,7 +35,7 @@ std::vector<Cell> error_row(const std::string& name, const HeldOutError& error,
           Cell(short_number(error.rmse), Emphasis::kStrong),
           interval(error.low, error.high),
           report::number(error.vaf_percent, 2),
-          &error == &before ? Cell("–") : Cell(percent(change)),
+          &error == &before ? Cell("–") : Cell(percent(change, 1)),
           report::number(error.rmse / floor, 2)};
 }
 
@@ -84,7 +84,7 @@ void add_trial(Table& table, const Step& step, std::size_t i) {
   table.rows.push_back({spaced(effect.kind), effect.form, listed(effect.channels),
                         std::to_string(diagnosis::complexity(trial.model)),
                         finite ? short_number(trial.rmse) : "–",
-                        finite ? percent(trial.rmse / step.before.rmse() - 1.0) : "–",
+                        finite ? percent(trial.rmse / step.before.rmse() - 1.0, 1) : "–",
                         finite ? p_value(diagnosis::compared(step.before, trial.held_out).p) : "–",
                         outcome_of(step, i)});
 }
@@ -287,7 +287,7 @@ Table detection_table(const Diagnosis& found) {
     table.align.insert(table.align.end(), {Align::kRight, Align::kRight, Align::kLeft});
   }
   const auto add_answer = [](std::vector<Cell>& row, const diagnosis::Detection& answer) {
-    row.emplace_back(percent(answer.share));
+    row.emplace_back(percent(answer.share, 1));
     row.emplace_back(p_value(answer.p));
     row.push_back(answer.found ? Cell("yes", Emphasis::kBad) : Cell("no", Emphasis::kFaint));
   };

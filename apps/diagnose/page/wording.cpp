@@ -122,12 +122,6 @@ std::string effect_title(const FoundEffect& effect) {
   return effect.channel.empty() ? kind : kind + " (" + effect.channel + ")";
 }
 
-std::string p_value(double p) { return p > 0.0 ? short_number(p) : "< 10⁻³⁰⁰"; }
-
-std::string percent(double share, int decimals) {
-  return report::number(100.0 * share, decimals) + " %";
-}
-
 std::string carried_in_words(const FoundEffect& effect) {
   if (effect.carried == 1.0)
     return "saved: it needs the inputs alone, so it can predict another recording";

@@ -4,9 +4,13 @@
 #include <string>
 #include <string_view>
 
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
 
 namespace stillhand::diagnose {
+
+using report::p_value;
+using report::percent;
 
 /// A unit as people write it: "m/s²" for "m/s^2", "N·m" for "N*m", "°C" for "degC", "µs" for "us".
 std::string shown_unit(std::string_view unit);
@@ -28,10 +32,6 @@ std::string too_small_in_words(const diagnosis::Diagnosis& diagnosis);
 
 /// "1.2 to 3.4"
 std::string interval(double low, double high);
-/// p as text; "< 10⁻³⁰⁰" where a double cannot hold it.
-std::string p_value(double p);
-/// "12.3 %"; an en dash for a number that is not finite.
-std::string percent(double share, int decimals = 1);
 
 /// "saved: it needs the inputs alone, ...", "saved to 67 %: ..." or "not saved: ...".
 std::string carried_in_words(const diagnosis::FoundEffect& effect);

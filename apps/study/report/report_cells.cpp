@@ -10,7 +10,6 @@
 namespace stillhand::study {
 
 using report::number;
-using report::short_number;
 using session::kMetrics;
 
 int decimals(std::size_t metric) { return session::kNumbers[metric].decimals; }
@@ -22,11 +21,6 @@ bool has_test(const Comparison& comparison) {
 double paper_value(std::size_t metric, Condition condition) {
   return kMetrics[metric].paper->means().at(condition == kA ? 0 : condition == kB ? 1 : 2);
 }
-
-// A tail below the range of a double is 0, but no probability is.
-std::string p_value(double p) { return p > 0.0 ? short_number(p) : "< 10⁻³⁰⁰"; }
-
-std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 
 std::string restored_text(const Analysis& analysis, std::size_t metric, Condition condition) {
   const auto found = analysis.restoration.find(condition);

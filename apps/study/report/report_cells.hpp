@@ -4,10 +4,14 @@
 #include <cstddef>
 #include <string>
 
+#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/subjects/analysis.hpp"
 
 /// Values and texts that several tables of the report share.
 namespace stillhand::study {
+
+using report::p_value;
+using report::percent;
 
 /// Digits after the point of a number, an index of session::kNumbers.
 int decimals(std::size_t metric);
@@ -16,12 +20,6 @@ int decimals(std::size_t metric);
 bool has_test(const Comparison& comparison);
 /// The paper's mean of a metric under condition A, B or C; RMS error at kPaperUnit_mm a unit.
 double paper_value(std::size_t metric, Condition condition);
-
-/// A probability for people; "< 10⁻³⁰⁰" if it underflows.
-std::string p_value(double p);
-
-/// "47 %" of the share 0.47.
-std::string percent(double share);
 
 /// "23.1 ± 4.0", with the number of subjects if the metric was not found in all.
 std::string mean_and_deviation(const MetricSample& sample, std::size_t metric);

@@ -43,7 +43,7 @@ void add_open_loop(report::Page& page, const Analysis& analysis) {
     for (const auto& [condition, lines] : shown) {
       row.emplace_back(number(lines[line].paper_db, 1));
       row.emplace_back(number(lines[line].reference_db, 1));
-      row.emplace_back(percent(lines[line].remnant_share));
+      row.emplace_back(percent(lines[line].remnant_share, 0));
     }
     table.rows.push_back(row);
   }
@@ -112,7 +112,7 @@ report::Table mitigations_table(const Analysis& analysis) {
     if (condition > kB && analysis.conditions.contains(kA) && analysis.conditions.contains(kB)) {
       const double a = analysis.conditions.at(kA)[0].mean;
       const double b = analysis.conditions.at(kB)[0].mean;
-      restored = percent((b - metrics[0].mean) / (b - a));
+      restored = percent((b - metrics[0].mean) / (b - a), 0);
     }
     table.rows.push_back(
         {title_of(condition), restored,
@@ -206,8 +206,8 @@ void add_wrong_models(report::Page& page, const Analysis& analysis) {
     const bool any = !shares.empty();
     table.rows.push_back({which == 'O' ? "another subject's" : "mean of all others",
                           mean_and_deviation(wrong.metrics[0], 0),
-                          percent(any ? statistics::median(shares) : NAN),
-                          percent(any ? *std::min_element(shares.begin(), shares.end()) : NAN),
+                          percent(any ? statistics::median(shares) : NAN, 0),
+                          percent(any ? *std::min_element(shares.begin(), shares.end()) : NAN, 0),
                           fmt::format("{} of {}", shares.size(), wrong.surviving_share.size())});
   }
   page.table(table);

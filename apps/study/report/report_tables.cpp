@@ -89,7 +89,7 @@ void add_outcome(report::Page& page, const Analysis& analysis) {
   const double paper = kMetrics[0].paper->restored_percent / 100.0;
   page.paragraph(fmt::format(
       "The motor cancels {} of the feedthrough force and restores {} of the RMS error. {}",
-      percent(analysis.conditions.at(kC)[session::index_of("cancelled_share")].mean),
+      percent(analysis.conditions.at(kC)[session::index_of("cancelled_share")].mean, 0),
       restored_text(analysis, 0),
       restored > paper
           ? "That is more than in the paper. Between the pegged trial and tracking, these "

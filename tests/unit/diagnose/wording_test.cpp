@@ -78,10 +78,10 @@ TEST(WordingTest, AProbabilityTooSmallForADoubleIsAnUpperBound) {
 }
 
 TEST(WordingTest, AShareIsAPercentage) {
-  EXPECT_EQ(percent(0.1234), "12.3 %");
+  EXPECT_EQ(percent(0.1234, 1), "12.3 %");
   EXPECT_EQ(percent(0.1234, 0), "12 %");
   EXPECT_EQ(percent(-0.5, 0), "−50 %");
-  EXPECT_THAT(percent(std::nan("")), HasSubstr("–"));
+  EXPECT_THAT(percent(std::nan(""), 1), HasSubstr("–"));
 }
 
 diagnosis::Diagnosis of_order(std::size_t order) {

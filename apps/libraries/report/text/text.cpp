@@ -157,8 +157,12 @@ std::string short_number(double value) {
   return with_minus_sign(mantissa) + "×" + power;
 }
 
+std::string percent(double share, int decimals) { return number(100.0 * share, decimals) + " %"; }
+
+std::string p_value(double p) { return p > 0.0 ? short_number(p) : "< 10⁻³⁰⁰"; }
+
 std::string restored(double share, const std::optional<std::pair<double, double>>& interval95) {
-  std::string out = number(100.0 * share, 0) + " % ";
+  std::string out = percent(share, 0) + " ";
   out += interval95 ? fmt::format("[{}, {}]", number(100.0 * interval95->first, 0),
                                   number(100.0 * interval95->second, 0))
                     : "(no interval)";

@@ -37,6 +37,12 @@ std::string number(double value, int decimals);
 /// 1e-4 .. 1e6.
 std::string short_number(double value);
 
+/// "12.3 %" of the share 0.123; an en dash for a number that is not finite.
+std::string percent(double share, int decimals);
+
+/// A probability for people; "< 10⁻³⁰⁰" where a double cannot hold it.
+std::string p_value(double p);
+
 /// Of what the motion took, a share is given back: "47 % [30, 60]".  Without an interval the text
 /// says so, and a share outside of 0 to 1 has its meaning: "130 % (no interval), better than A".
 std::string restored(double share, const std::optional<std::pair<double, double>>& interval95 = {});
