@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -29,19 +30,7 @@ using device_rig::CalibrationStep;
 // The counts of a turn are known; steps that say otherwise by more than this hold a mistake.
 constexpr double kGainTolerance = 0.01;
 
-const char* default_quantities(CalibratedSignal signal) {
-  switch (signal) {
-    case CalibratedSignal::kForce:
-      return "0,5,10,-5,-10";
-    case CalibratedSignal::kAcceleration:
-      return "0,1g,-1g";
-    case CalibratedSignal::kAngle:
-      break;
-  }
-  return "0,10deg,20deg,-10deg,-20deg";
-}
-
-std::size_t index_of(CalibratedSignal signal) { return static_cast<std::size_t>(signal); }
+constexpr std::array kDefaultQuantities{"0,5,10,-5,-10", "0,1g,-1g", "0,10deg,20deg,-10deg,-20deg"};
 
 /// The steps of one calibration.
 class Steps {
@@ -173,7 +162,8 @@ void write(const CalibrateOptions& options, const device_rig::CalibrationRecord&
 int run_calibrate(const CalibrateOptions& options, const runtime::Stop& interrupted) {
   const auto words = device_rig::words_of(options.signal);
   std::vector<double> known = known_quantities(
-      options.known.empty() ? default_quantities(options.signal) : options.known, options.signal);
+      options.known.empty() ? kDefaultQuantities[index_of(options.signal)] : options.known,
+      options.signal);
   device_rig::check_known(known);
   known.push_back(known.front());  // what slips or warms up shows
   const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -115,10 +114,6 @@ void add_calibrate_command(CLI::App& cli, int& status) {
       "0,1g,-1g; angle 0,10deg,20deg,-10deg,-20deg]");
   add_measures(*calibrate, *options);
   calibrate->callback([options, signal, &status] {
-    const std::map<std::string, device_rig::CalibratedSignal> signals{
-        {"force", device_rig::CalibratedSignal::kForce},
-        {"acceleration", device_rig::CalibratedSignal::kAcceleration},
-        {"angle", device_rig::CalibratedSignal::kAngle}};
     want_terminal();
     const runtime::Stop interrupted;
     if (*signal == "platform") {
@@ -126,7 +121,9 @@ void add_calibrate_command(CLI::App& cli, int& status) {
     } else if (*signal == "check") {
       status = run_hand_off_check(*options, interrupted);
     } else {
-      options->signal = signals.at(*signal);
+      // kOrder begins with the signals.
+      const auto place = std::ranges::find(kOrder, *signal) - kOrder.begin();
+      options->signal = device_rig::kCalibratedSignals.at(static_cast<std::size_t>(place));
       status = run_calibrate(*options, interrupted);
     }
     if (status == 0) say_following(*signal, *options);

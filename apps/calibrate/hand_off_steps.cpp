@@ -92,7 +92,7 @@ class HandOff {
   double read(CalibratedSignal signal) {
     const AllReadings all = station_.read(kStep_s);
     check_devices();
-    const Readings& readings = all[static_cast<std::size_t>(signal)];
+    const Readings& readings = all[index_of(signal)];
     if (readings.missing * 100 > readings.samples) throw Wrong{"a sensor without numbers"};
     return in_units(signal, readings.mean, sensing_);
   }

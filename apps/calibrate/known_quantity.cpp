@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -23,24 +24,15 @@ struct OtherUnit {
   double factor;
 };
 
-OtherUnit other_unit(CalibratedSignal signal) {
-  switch (signal) {
-    case CalibratedSignal::kForce:
-      return {"kg", kGravity_m_s2};
-    case CalibratedSignal::kAcceleration:
-      return {"g", kGravity_m_s2};
-    case CalibratedSignal::kAngle:
-      break;
-  }
-  return {"deg", kDegree_rad};
-}
+constexpr std::array<OtherUnit, device_rig::kCalibratedSignals.size()> kOtherUnits{
+    {{"kg", kGravity_m_s2}, {"g", kGravity_m_s2}, {"deg", kDegree_rad}}};
 
 double known_quantity(const std::string& word, CalibratedSignal signal) {
   char* end = nullptr;
   const double number = std::strtod(word.c_str(), &end);
   std::string unit = end;
   unit.erase(0, unit.find_first_not_of(' '));
-  const OtherUnit other = other_unit(signal);
+  const OtherUnit other = kOtherUnits[index_of(signal)];
   const char* own = device_rig::words_of(signal).unit;
   const bool is_number = end != word.c_str() && std::isfinite(number);
   if (is_number && (unit.empty() || unit == own)) return number;

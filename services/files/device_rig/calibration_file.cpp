@@ -60,40 +60,21 @@ void check_made(const Made& made_record, const std::string& device, std::int64_t
   }
 }
 
-// `all` is const or not, as its record.
-template <typename All>
-auto& record_in(All& all, CalibratedSignal signal) noexcept {
-  switch (signal) {
-    case CalibratedSignal::kForce:
-      return all.force;
-    case CalibratedSignal::kAcceleration:
-      return all.acceleration;
-    case CalibratedSignal::kAngle:
-      break;
-  }
-  return all.angle;
-}
+constexpr std::array<SignalWords, kCalibratedSignals.size()> kWords{
+    {{"force", "N", "V"}, {"acceleration", "m/s^2", "V"}, {"angle", "rad", "counts"}}};
+constexpr std::array kRecords{&Calibrations::force, &Calibrations::acceleration,
+                              &Calibrations::angle};
 
 }  // namespace
 
-SignalWords words_of(CalibratedSignal signal) noexcept {
-  switch (signal) {
-    case CalibratedSignal::kForce:
-      return {"force", "N", "V"};
-    case CalibratedSignal::kAcceleration:
-      return {"acceleration", "m/s^2", "V"};
-    case CalibratedSignal::kAngle:
-      break;
-  }
-  return {"angle", "rad", "counts"};
-}
+SignalWords words_of(CalibratedSignal signal) noexcept { return kWords[index_of(signal)]; }
 
 CalibrationRecord& Calibrations::of(CalibratedSignal signal) noexcept {
-  return record_in(*this, signal);
+  return this->*kRecords[index_of(signal)];
 }
 
 const CalibrationRecord& Calibrations::of(CalibratedSignal signal) const noexcept {
-  return record_in(*this, signal);
+  return this->*kRecords[index_of(signal)];
 }
 
 Calibrations load_calibrations(const std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -18,6 +19,11 @@ namespace stillhand::device_rig {
 enum class CalibratedSignal : unsigned char { kForce, kAcceleration, kAngle };
 inline constexpr std::array kCalibratedSignals{
     CalibratedSignal::kForce, CalibratedSignal::kAcceleration, CalibratedSignal::kAngle};
+
+/// Its place in kCalibratedSignals, and in every table of that order.
+constexpr std::size_t index_of(CalibratedSignal signal) noexcept {
+  return static_cast<std::size_t>(signal);
+}
 
 /// Name of a signal as in devices.yaml, its unit, and the unit of what its sensor reads.
 struct SignalWords {
