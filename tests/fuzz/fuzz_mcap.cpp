@@ -2,7 +2,7 @@
 // Recordings as MCAP: opened by index or by scan, every message, then every checksum.  The limit on
 // a chunk is low, so that the fuzzer's own limit on memory finds what ignores it.
 #include "services/core/recording/mcap/mcap_reader.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace stillhand::recording;

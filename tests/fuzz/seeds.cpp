@@ -10,12 +10,12 @@
 #include "apps/libraries/experiment/file/journal.hpp"
 #include "idl/model.h"
 #include "services/core/recording/mcap/mcap_writer.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
 #include "services/core/recording/messages/schema_types.hpp"
 #include "services/files/cancellation/control_model_file.hpp"
 #include "services/files/identification/model_file.hpp"
 #include "services/messages/cancellation/codec.hpp"
 #include "tests/support/cdr_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 #include "tests/support/session_file.hpp"
 
 namespace {

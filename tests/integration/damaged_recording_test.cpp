@@ -11,8 +11,8 @@
 
 #include "services/core/recording/mcap/crc32.hpp"
 #include "services/core/recording/mcap/mcap_reader.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
 #include "services/files/recording/file_io.hpp"
+#include "tests/support/memory_bytes.hpp"
 
 namespace stillhand::recording {
 namespace {

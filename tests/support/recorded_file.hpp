@@ -8,7 +8,7 @@
 
 #include "services/core/recording/mcap/mcap_reader.hpp"
 #include "services/core/recording/mcap/mcap_writer.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 
 namespace stillhand::tests {
 

@@ -15,7 +15,7 @@
 #include "idl/session.h"
 #include "idl/topics.hpp"
 #include "services/core/recording/mcap/mcap_writer.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 
 namespace stillhand::tests {
 

@@ -11,7 +11,7 @@
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
 #include "services/core/recording/mcap/mcap_writer.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace stillhand::motion::ride_file_test {

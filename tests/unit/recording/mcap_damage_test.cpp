@@ -6,7 +6,7 @@
 #include <random>
 
 #include "services/core/recording/mcap/mcap_reader.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording::mcap_damage_test {

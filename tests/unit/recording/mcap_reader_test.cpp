@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "services/core/recording/mcap/mcap_records.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording::mcap_reader_test {

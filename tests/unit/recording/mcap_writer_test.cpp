@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "places.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording::mcap_writer_test {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 
 namespace stillhand::recording::source_window_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "places.hpp"
 #include "services/bus/recording/qos_texts.hpp"
 #include "services/core/recording/mcap/mcap_writer.hpp"
-#include "services/core/recording/mcap/memory_bytes.hpp"
+#include "tests/support/memory_bytes.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/refusal.hpp"
 

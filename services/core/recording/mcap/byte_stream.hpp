@@ -10,7 +10,7 @@
 namespace stillhand::recording {
 
 /// Target of a recording: bytes are appended, never changed.  recording/file_io.hpp has the sink on
-/// a file, memory_bytes.hpp the sink in memory.
+/// a file, tests/support/memory_bytes.hpp the sink in memory.
 class ByteSink {
  public:
   virtual ~ByteSink() = default;
