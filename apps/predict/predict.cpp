@@ -2,16 +2,15 @@
 #include "apps/predict/predict.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/record/digits.hpp"
 #include "services/core/diagnosis/start_state.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 
@@ -52,11 +51,7 @@ std::vector<double> spread_out(const std::vector<double>& x, const Measurement& 
   return y;
 }
 
-std::string digits_of(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
+std::string digits_of(double value) { return diagnosis::digits(value, 3); }
 
 // Where the recording leaves a range in which the model was seen, Eq. DG-56.
 void add_ranges(const std::vector<diagnosis::LeftRange>& left, Prediction& prediction) {

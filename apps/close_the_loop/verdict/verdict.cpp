@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/close_the_loop/verdict/verdict.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "apps/close_the_loop/verdict/drive_effects.hpp"
 #include "apps/diagnose/page/wording.hpp"
@@ -48,11 +49,7 @@ const char* place_of(const diagnosis::Effect& effect) {
   return std::holds_alternative<diagnosis::control::NotFelt>(role) ? kLoadCell : kBody;
 }
 
-std::string milliseconds(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.0f ms", 1e3 * seconds);
-  return text;
-}
+std::string milliseconds(double seconds) { return fmt::format("{:.0f} ms", 1e3 * seconds); }
 
 std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
                                        const DeclaredDrive& declared, double least_force_n) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/dashboard/view/view_json.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 #include "apps/dashboard/core/residual_spectrum.hpp"
@@ -50,10 +51,8 @@ Json readers_json(const MessageFeed& feed, const topics::Topic& topic) {
 // Four digits: a screen shows no more.
 Json numbers(const std::vector<double>& values) {
   Json all = Json::array();
-  std::array<char, 32> text{};
   for (const double value : values) {
-    std::snprintf(text.data(), text.size(), "%.4g", value);
-    all.push_back(number(std::strtod(text.data(), nullptr)));
+    all.push_back(number(std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr)));
   }
   return all;
 }

@@ -2,9 +2,7 @@
 #include "services/core/diagnosis/alignment.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "services/core/diagnosis/record/digits.hpp"
@@ -146,18 +144,11 @@ std::vector<double> moved(const std::vector<double>& x, double rate_hz, const Al
 }
 
 std::string in_words(const Alignment& alignment) {
-  std::array<char, 160> text{};
-  const char* way = alignment.lag_s < 0.0 ? "leads" : "follows";
-  if (!drifts(alignment)) {
-    std::snprintf(text.data(), text.size(), "the output %s the input by %.3g s", way,
-                  std::abs(alignment.lag_s));
-  } else {
-    std::snprintf(text.data(), text.size(),
-                  "two clocks: the output's lag grows by %.3g %% of the time, and in the middle it "
-                  "%s the input by %.3g s",
-                  100.0 * alignment.drift, way, std::abs(alignment.lag_s));
-  }
-  return text.data();
+  const std::string by = (alignment.lag_s < 0.0 ? "leads the input by " : "follows the input by ") +
+                         digits(std::abs(alignment.lag_s), 3) + " s";
+  if (!drifts(alignment)) return "the output " + by;
+  return "two clocks: the output's lag grows by " + digits(100.0 * alignment.drift, 3) +
+         " % of the time, and in the middle it " + by;
 }
 
 std::string swapped_in_words(const std::string& input, double back, const std::string& output,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/diagnosis/judging.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "services/core/diagnosis/effect_sizes.hpp"
@@ -190,10 +190,7 @@ void note_refuted(Diagnosis& diagnosis) {
     std::string note = kind + " (" + refuted.effect.form +
                        ") left out: it changes the error of recordings held out whole, ";
     for (std::size_t r = 0; r < refuted.fall.size(); ++r) {
-      std::array<char, 48> text{};
-      std::snprintf(text.data(), text.size(), "%s%zu by %+.1f %%", r == 0 ? "" : ", ", r + 1,
-                    -100.0 * refuted.fall[r]);
-      note += text.data();
+      note += fmt::format("{}{} by {:+.1f} %", r == 0 ? "" : ", ", r + 1, -100.0 * refuted.fall[r]);
     }
     diagnosis.notes.push_back(note);
   }
@@ -210,12 +207,11 @@ void note_by_chance(Diagnosis& diagnosis) {
     if (std::ranges::any_of(noted, is_alike)) continue;
     noted.push_back(each.effect);
     const double reached = each.p * (1.0 + kSurrogates) - 1.0;
-    std::array<char, 200> text{};
-    std::snprintf(text.data(), text.size(),
-                  " left out: it lowers the error by %.1f %%, but in %.0f of %d copies of what the "
-                  "model leaves, moved in time or with other phases, something explains as much",
-                  100.0 * each.fall, reached, static_cast<int>(kSurrogates));
-    diagnosis.notes.push_back(each.effect.kind + " (" + each.effect.form + ")" + text.data());
+    diagnosis.notes.push_back(fmt::format(
+        "{} ({}) left out: it lowers the error by {:.1f} %, but in {:.0f} of {} copies of what the "
+        "model leaves, moved in time or with other phases, something explains as much",
+        each.effect.kind, each.effect.form, 100.0 * each.fall, reached,
+        static_cast<int>(kSurrogates)));
   }
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/alignment.hpp"

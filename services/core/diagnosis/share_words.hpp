@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <string>
 
 #include "services/core/diagnosis/record/digits.hpp"
@@ -18,9 +18,7 @@ inline std::string share_in_words(double share) {
 /// "VAF 97.62 %".
 inline std::string vaf_in_words(double percent) {
   if (percent < -100.0) return "VAF below -100 % (worse than the mean)";
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "VAF %.2f %%", percent);
-  return text.data();
+  return fmt::format("VAF {:.2f} %", percent);
 }
 
 }  // namespace stillhand::diagnosis

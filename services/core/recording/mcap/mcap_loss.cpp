@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/recording/mcap/mcap_loss.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 namespace stillhand::recording {
 namespace {
@@ -22,9 +23,7 @@ std::string byte_count(std::uint64_t bytes) {
   double value = static_cast<double>(bytes) / 1000.0;
   std::size_t unit = 0;
   for (; value >= kRoundsTo1000 && unit + 1 < kUnits.size(); ++unit) value /= 1000.0;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g %s", value, kUnits[unit]);
-  return text.data();
+  return fmt::format("{:.3g} {}", value, kUnits[unit]);
 }
 
 std::string loss_line(const std::string& path, const std::vector<Damage>& damage,
@@ -55,10 +54,8 @@ std::string clock_line(const std::string& path, const McapReader& reader) {
   std::string line = path + ": the clock of its recorder was set by ";
   for (const ClockStep& step : reader.clock_steps()) {
     const auto after_ns = static_cast<std::int64_t>(step.at_ns - reader.statistics().start_time_ns);
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), "%+.3f s at %.3f s, ",
-                  1e-9 * static_cast<double>(step.by_ns), 1e-9 * static_cast<double>(after_ns));
-    line += text.data();
+    line += fmt::format("{:+.3f} s at {:.3f} s, ", 1e-9 * static_cast<double>(step.by_ns),
+                        1e-9 * static_cast<double>(after_ns));
   }
   return line + "its times are read as if it had not been; `stillhand recover` writes them so";
 }
