@@ -2,9 +2,11 @@
 #include "apps/identify/identify.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "apps/identify/worthless.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -39,11 +41,9 @@ const Channel& channel_of(const Measurement& measurement, const std::string& opt
                           const std::string& name) {
   const Channel* channel = measurement.find(name);
   if (channel != nullptr) return *channel;
-  std::string names;
-  for (const Channel& there : measurement.channels) {
-    names += (names.empty() ? "" : ", ") + there.name;
-  }
-  throw ConfigError(option, "'" + name + "'", "one of " + names + " in " + measurement.source);
+  const auto names = measurement.channels | std::views::transform(&Channel::name);
+  throw ConfigError(option, "'" + name + "'",
+                    fmt::format("one of {} in {}", fmt::join(names, ", "), measurement.source));
 }
 
 const Stretch& longest(const std::vector<Stretch>& stretches) {

@@ -246,10 +246,7 @@ std::string motion_json(const Design& design, const ExportedTrial& trial,
                         const recording::Recording& rows) {
   ordered_json json{{"TaskName", name_of(trial.kind)},
                     {"TaskDescription", task_description(trial.kind)}};
-  std::string instructions;
-  for (const std::string& line : design.instructions) {
-    instructions += (instructions.empty() ? "" : " ") + line;
-  }
+  const std::string instructions = fmt::format("{}", fmt::join(design.instructions, " "));
   if (!instructions.empty()) json["Instructions"] = instructions;
   json["TrackingSystemName"] = "rig";
   json["SamplingFrequency"] = rows.rate_hz;

@@ -68,9 +68,7 @@ void add_open_questions(report::Page& page, const StudyRecord& record) {
 
 void add_recorded_facts(report::Page& page, const StudyRecord& record) {
   const RecordedSource& source = *record.recorded;
-  std::string codes;
-  for (const std::string& code : source.participants) codes += (codes.empty() ? "" : ", ") + code;
-  page.facts({{"participants", codes},
+  page.facts({{"participants", fmt::format("{}", fmt::join(source.participants, ", "))},
               {"complete tracking trials", std::to_string(source.trials.size())},
               {"trials in the tables", std::to_string(source.used.size())},
               {"trial", short_number(record.options.protocol.trial_s) + " s"},
