@@ -39,25 +39,10 @@ report::Panel number_panel(const LoopRecord& record, const Number& number) {
   panel.x.ticks = {};
   panel.y.low = 0.0;
   panel.legend = report::Legend::kNone;
-  double at = 0.0;
   for (const Shown& each : shown(record.result)) {
-    at += 1.0;
     const Estimate value = measured(record.conditions, each.trial->label, number);
-    panel.series.push_back(
-        {.kind = report::Kind::kBars, .colour = each.colour, .x = {at}, .y = {value.mean}});
-    if (value.interval95) {
-      panel.series.push_back({.kind = report::Kind::kErrorBars,
-                              .colour = Colour::kTarget,
-                              .x = {at},
-                              .y = {value.mean},
-                              .y_low = {value.interval95->first},
-                              .y_high = {value.interval95->second},
-                              .point_size = 0.1});
-    }
-    panel.x.ticks.push_back({at, each.trial->label});
+    add_bar(panel, each.trial->label, each.colour, value.mean, value.interval95);
   }
-  panel.x.low = 0.4;
-  panel.x.high = at + 0.6;
   return panel;
 }
 
@@ -209,6 +194,23 @@ report::Figure motion_figure(const LoopResult& result) {
 }
 
 }  // namespace
+
+void add_bar(report::Panel& panel, const std::string& label, Colour colour, double value,
+             const std::optional<std::pair<double, double>>& interval95) {
+  const double at = static_cast<double>(panel.x.ticks.size()) + 1.0;
+  panel.x.ticks.push_back({at, label});
+  panel.x.low = 0.4;
+  panel.x.high = at + 0.6;
+  panel.series.push_back({.kind = report::Kind::kBars, .colour = colour, .x = {at}, .y = {value}});
+  if (!interval95) return;
+  panel.series.push_back({.kind = report::Kind::kErrorBars,
+                          .colour = Colour::kTarget,
+                          .x = {at},
+                          .y = {value},
+                          .y_low = {interval95->first},
+                          .y_high = {interval95->second},
+                          .point_size = 0.1});
+}
 
 std::vector<report::Figure> loop_figures(const LoopRecord& record) {
   std::vector<report::Figure> figures{tracking_figure(record), force_figure(record),

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "apps/close_the_loop/repair/repair.hpp"
 #include "apps/close_the_loop/session/closed_loop.hpp"
@@ -70,6 +71,10 @@ std::string without_effect(const Verdict& verdict, double least_force_n);
 std::string kept_text(const LoopRecord& record);
 /// "mean [low, high]" of an estimate, or the mean alone.
 std::string with_interval(const Estimate& estimate, int decimals, double factor = 1.0);
+
+/// A bar at the next place of the panel, with its interval where there is one.
+void add_bar(report::Panel& panel, const std::string& label, report::Colour colour, double value,
+             const std::optional<std::pair<double, double>>& interval95);
 
 /// Every number of each condition, and what each restores of the paper's metrics.
 report::Table measures_table(const Conditions& conditions);

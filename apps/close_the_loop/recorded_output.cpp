@@ -162,21 +162,8 @@ report::Panel bars(const RecordedLoop& loop, const Judged& judged) {
   panel.y.label = "left [" + diagnose::shown_unit(loop.unit) + "]";
   panel.y.low = 0.0;
   panel.legend = report::Legend::kNone;
-  double at = 0.0;
   const auto bar = [&](const char* label, report::Colour colour, const Level& level) {
-    at += 1.0;
-    panel.series.push_back(
-        {.kind = report::Kind::kBars, .colour = colour, .x = {at}, .y = {level.rms}});
-    if (level.interval95) {
-      panel.series.push_back({.kind = report::Kind::kErrorBars,
-                              .colour = report::Colour::kTarget,
-                              .x = {at},
-                              .y = {level.rms},
-                              .y_low = {level.interval95->first},
-                              .y_high = {level.interval95->second},
-                              .point_size = 0.1});
-    }
-    panel.x.ticks.push_back({at, label});
+    add_bar(panel, label, colour, level.rms, level.interval95);
   };
   bar("nothing", report::Colour::kMeasured, judged.linear.without);
   bar("linear", report::Colour::kWarning, judged.linear.left);
@@ -185,8 +172,6 @@ report::Panel bars(const RecordedLoop& loop, const Judged& judged) {
   if (judged.motor_augmented) {
     bar("C+", report::Colour::kConditionCPlus, judged.motor_augmented->left);
   }
-  panel.x.low = 0.4;
-  panel.x.high = at + 0.6;
   return panel;
 }
 

@@ -41,17 +41,11 @@ std::string name_of(const Worth& worth) {
   return worth.kind + (worth.channel.empty() ? "" : " (" + worth.channel + ")");
 }
 
-void add_bar(report::Panel& panel, double at, const Estimate& change, report::Colour colour) {
-  panel.series.push_back(
-      {.kind = report::Kind::kBars, .colour = colour, .x = {at}, .y = {-change.mean}});
-  if (!change.interval95) return;
-  panel.series.push_back({.kind = report::Kind::kErrorBars,
-                          .colour = report::Colour::kTarget,
-                          .x = {at},
-                          .y = {-change.mean},
-                          .y_low = {-change.interval95->second},
-                          .y_high = {-change.interval95->first},
-                          .point_size = 0.1});
+void add_reduction(report::Panel& panel, const std::string& label, const Estimate& change,
+                   report::Colour colour) {
+  auto interval95 = change.interval95;
+  if (interval95) interval95 = {-interval95->second, -interval95->first};
+  add_bar(panel, label, colour, -change.mean, interval95);
 }
 
 }  // namespace
@@ -101,18 +95,15 @@ report::Figure repair_figure(const RepairList& list) {
   panel.title = "reduction of the tracking error [mm RMS]";
   panel.legend = report::Legend::kNone;
   panel.x.ticks = {};
-  double at = 0.0;
   for (const Worth& each : list.effects) {
     if (!each.why_not.empty()) continue;
     if (each.is_cancelled) {
-      panel.x.ticks.push_back({++at, name_of(each) + ": cancelled"});
-      add_bar(panel, at, each.by_cancelling_mm, report::Colour::kConditionCPlus);
+      add_reduction(panel, name_of(each) + ": cancelled", each.by_cancelling_mm,
+                    report::Colour::kConditionCPlus);
     }
-    panel.x.ticks.push_back({++at, name_of(each) + ": mended"});
-    add_bar(panel, at, each.by_mending_mm, report::Colour::kConditionA);
+    add_reduction(panel, name_of(each) + ": mended", each.by_mending_mm,
+                  report::Colour::kConditionA);
   }
-  panel.x.low = 0.4;
-  panel.x.high = at + 0.6;
   figure.panels.push_back(std::move(panel));
   return figure;
 }
