@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/libraries/session/protocol.hpp"
-#include "services/core/contract/config_error.hpp"
+#include "services/core/cancellation/model_check.hpp"
 #include "services/core/rig/plant.hpp"
 
 namespace stillhand::vehicle {
@@ -49,11 +49,8 @@ DriveLoop::DriveLoop(DriveConfigs configs, std::uint64_t seed)
       ceiling_rad_(configs.driven.oscillation.ceiling_rad) {}
 
 void DriveLoop::use_model(const identification::FeedthroughModel& model) {
-  const auto refusal = countermeasure_.load_model(cancellation::control_model(model.control));
-  if (refusal != cancellation::Refusal::kNone) {
-    throw ConfigError("identification.model", std::string(cancellation::describe(refusal)),
-                      "a model that the canceller accepts");
-  }
+  require_taken(countermeasure_.load_model(cancellation::control_model(model.control)),
+                "identification.model", "a model that the canceller accepts");
 }
 
 session::Turned DriveLoop::tick_once(const session::Turn& turn, bool cancel,

@@ -156,11 +156,8 @@ struct MotorRun {
 MotorRun motor_run(const cancellation::ControlModel& model,
                    const std::vector<cancellation::ChannelSample>& motion, double late_s) {
   cancellation::Countermeasure canceller({}, {.force = true});
-  const cancellation::Refusal refusal = canceller.load_model(model);
-  if (refusal != cancellation::Refusal::kNone) {
-    throw ConfigError("the canceller's model", std::string(cancellation::describe(refusal)),
-                      "one that the canceller accepts");
-  }
+  require_taken(canceller.load_model(model), "the canceller's model",
+                "one that the canceller accepts");
   rig::RigConfig rig;
   rig.motor.delay_s = late_s;
   rig::Motor motor(rig.motor, rig.stick.lever_m);

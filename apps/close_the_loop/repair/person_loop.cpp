@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/core/cancellation/model_check.hpp"
 #include "services/core/cancellation/parts/countermeasure.hpp"
-#include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
 #include "services/core/contract/units.hpp"
 #include "services/core/human_operator/crossover_operator.hpp"
@@ -61,11 +61,7 @@ rig::Motor motor_of(const Drive& drive) {
 cancellation::Countermeasure countermeasure(const cancellation::ControlModel* model) {
   cancellation::Countermeasure out({}, {.force = true});
   if (model == nullptr) return out;
-  const cancellation::Refusal refusal = out.load_model(*model);
-  if (refusal != cancellation::Refusal::kNone) {
-    throw ConfigError("the canceller's model", std::string(cancellation::describe(refusal)),
-                      "one that the canceller accepts");
-  }
+  require_taken(out.load_model(*model), "the canceller's model", "one that the canceller accepts");
   return out;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/close_the_loop/session/session.hpp"
 
-#include "services/core/contract/config_error.hpp"
+#include "services/core/cancellation/model_check.hpp"
 #include "services/core/signal/reference.hpp"
 #include "services/files/rig/sealed_file.hpp"
 
@@ -48,11 +48,8 @@ TrialRun run_alone(const SimulatedRig& rig, std::uint64_t seed,
                    const cancellation::ControlModel* model, const std::string& label) {
   session::InProcessLoop loop(rig.configs, seed, kKeepEvery, effect_of(rig));
   if (model != nullptr) {
-    const auto refusal = loop.use_model(*model);
-    if (refusal != cancellation::Refusal::kNone) {
-      throw ConfigError("the canceller's model", std::string(cancellation::describe(refusal)),
-                        "one that the canceller accepts");
-    }
+    require_taken(loop.use_model(*model), "the canceller's model",
+                  "one that the canceller accepts");
   }
   for (std::size_t i = 0; i + 1 < trials.size(); ++i) static_cast<void>(loop.run(trials[i]));
   return run_of(loop.run(trials.back()), trials.back(), label);
@@ -79,10 +76,8 @@ identification::FeedthroughModel InProcessSession::identify(const TrialRun& pegg
   record.acceleration_m_s2 = pegged.measured.find("a_y")->values;
   record.force_n = pegged.measured.find("f")->values;
   const identification::FeedthroughModel model = identification::identify(record);
-  if (const auto refusal = loop_.use_model(model); refusal != cancellation::Refusal::kNone) {
-    throw ConfigError("identification", std::string(cancellation::describe(refusal)),
-                      "a model that the canceller takes; a longer --identify-seconds helps");
-  }
+  require_taken(loop_.use_model(model), "identification",
+                "a model that the canceller takes; a longer --identify-seconds helps");
   return model;
 }
 

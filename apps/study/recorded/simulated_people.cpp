@@ -13,6 +13,7 @@
 #include "apps/libraries/experiment/core/plan.hpp"
 #include "apps/study/recorded/average.hpp"
 #include "apps/study/subjects/trial_analysis.hpp"
+#include "services/core/cancellation/model_check.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/statistics/multiple_testing.hpp"
 #include "services/core/statistics/signed_rank.hpp"
@@ -97,10 +98,7 @@ class SimulatedPerson {
 
  private:
   void use(session::InProcessLoop& loop, const auto& model) const {
-    const cancellation::Refusal refusal = loop.use_model(model);
-    if (refusal == cancellation::Refusal::kNone) return;
-    throw ConfigError("a model", std::string(cancellation::describe(refusal)),
-                      "one that the canceller accepts");
+    require_taken(loop.use_model(model), "a model", "one that the canceller accepts");
   }
 
   void identify(session::InProcessLoop& loop, std::int64_t session, std::int64_t number) {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "apps/study/subjects/trial_analysis.hpp"
+#include "services/core/cancellation/model_check.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/expects.hpp"
 #include "services/files/settings/yaml_text.hpp"
@@ -62,11 +63,8 @@ session::CoreConfigs configs_of(const StudyOptions& options, const population::S
 
 // Without this check, condition C would run without a motor if the canceller refuses the model.
 void use(session::InProcessLoop& loop, const identification::FeedthroughModel& model) {
-  const cancellation::Refusal refusal = loop.use_model(model);
-  if (refusal != cancellation::Refusal::kNone) {
-    throw ConfigError("identification.model", std::string(cancellation::describe(refusal)),
-                      "a model that the canceller accepts; a longer --identify-seconds helps");
-  }
+  require_taken(loop.use_model(model), "identification.model",
+                "a model that the canceller accepts; a longer --identify-seconds helps");
 }
 
 // E and F change the stick or the body, so they need their own rig.

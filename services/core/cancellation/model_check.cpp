@@ -13,6 +13,7 @@
 #include "services/core/cancellation/control_model_filter.hpp"
 #include "services/core/cancellation/model_strength.hpp"
 #include "services/core/cancellation/value_table.hpp"
+#include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
 
 namespace stillhand::cancellation {
@@ -262,41 +263,32 @@ bool is_hand(const HandCompliance& hand) noexcept {
 }
 
 std::string_view describe(Refusal refusal) noexcept {
-  switch (refusal) {
-    case Refusal::kNone:
-      return "model taken";
-    case Refusal::kMalformed:
-      return "model is empty, its sizes differ, its denominator does not start with 1, or a lag, a "
-             "frequency, a table's ends or an element with memory are out of order";
-    case Refusal::kNotFinite:
-      return "a coefficient is not a finite number";
-    case Refusal::kWrongRate:
-      return "model is not at the canceller's rate (1000 Hz, or sampling.model_ticks of them), or "
-             "below 1000 Hz has more than a_y";
-    case Refusal::kOrder:
-      return "model order is above 12";
-    case Refusal::kUnstable:
-      return "a pole lies on or outside the unit circle";
-    case Refusal::kSettling:
-      return "model takes longer than 10 s to settle";
-    case Refusal::kGain:
-      return "model gain is above the bound";
-    case Refusal::kTooMany:
-      return "more than 4 inputs, 6 paths, 6 waves, 7 elements with memory or 129 values in a "
-             "table";
-    case Refusal::kPath:
-      return "a further channel, a path next to the body, a wave or what is held at rest is "
-             "stronger "
-             "than its bound";
-    case Refusal::kLoop:
-      return "the spring inside the body is not stable at each of its slopes, or its motion does "
-             "not die away";
-    case Refusal::kRest:
-      return "model asks for a force while nothing moves";
-    case Refusal::kCompliance:
-      return "mass, damping, stiffness or lever of the hand are out of range";
-  }
-  return "unknown";
+  // In the order of the enumeration.
+  constexpr std::array<std::string_view, 13> kWords{
+      "model taken",
+      "model is empty, its sizes differ, its denominator does not start with 1, or a lag, a "
+      "frequency, a table's ends or an element with memory are out of order",
+      "a coefficient is not a finite number",
+      "model is not at the canceller's rate (1000 Hz, or sampling.model_ticks of them), or below "
+      "1000 Hz has more than a_y",
+      "model order is above 12",
+      "a pole lies on or outside the unit circle",
+      "model takes longer than 10 s to settle",
+      "model gain is above the bound",
+      "more than 4 inputs, 6 paths, 6 waves, 7 elements with memory or 129 values in a table",
+      "a further channel, a path next to the body, a wave or what is held at rest is stronger than "
+      "its bound",
+      "the spring inside the body is not stable at each of its slopes, or its motion does not die "
+      "away",
+      "model asks for a force while nothing moves",
+      "mass, damping, stiffness or lever of the hand are out of range"};
+  static_assert(kWords.size() == static_cast<std::size_t>(Refusal::kCompliance) + 1);
+  const auto number = static_cast<std::size_t>(refusal);
+  return number < kWords.size() ? kWords[number] : "unknown";
+}
+
+void require_taken(Refusal refusal, const std::string& what, const std::string& want) {
+  if (refusal != Refusal::kNone) throw ConfigError(what, std::string(describe(refusal)), want);
 }
 
 std::int64_t settle_ticks(const signal::DifferenceModel& model) {

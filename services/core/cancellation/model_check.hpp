@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "services/core/cancellation/control_model.hpp"
@@ -27,6 +28,8 @@ enum class Refusal : std::uint8_t {
 };
 /// One line for a person.
 std::string_view describe(Refusal refusal) noexcept;
+/// @throws ConfigError where the model was not taken, of what is named
+void require_taken(Refusal refusal, const std::string& what, const std::string& want);
 
 /// Slowest transient that a model may have [ticks], to 1 %.  Feedthrough settles within a second;
 /// 10 s leaves room for the slow pole of a model that was fitted to drift.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "services/core/contract/config_error.hpp"
+#include "services/core/cancellation/model_check.hpp"
 
 namespace stillhand::cancellation {
 namespace {
@@ -35,11 +35,8 @@ Countermeasure::Countermeasure(const Config& config, const Recipe& recipe)
       follows_(own_.follow()) {
   if (follows_) force_.follow(own_.follow());
   if (!recipe.model) return;
-  const Refusal refusal = load_model(*recipe.model);
-  if (refusal != Refusal::kNone) {
-    throw ConfigError("mitigation.force", std::string(describe(refusal)),
-                      "a model that the canceller accepts");
-  }
+  require_taken(load_model(*recipe.model), "mitigation.force",
+                "a model that the canceller accepts");
 }
 
 Refusal Countermeasure::load_model(const ControlModel& model) noexcept {
