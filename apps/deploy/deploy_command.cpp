@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <iterator>
 #include <memory>
@@ -70,15 +71,8 @@ const Host& this_host(const Inventory& inventory, const std::string& name) {
 }
 
 const char* word_of(State state) {
-  switch (state) {
-    case State::kGood:
-      return "good";
-    case State::kWrong:
-      return "wrong";
-    case State::kNotChecked:
-      return "not checked";
-  }
-  return "";
+  constexpr std::array kWords{"good", "wrong", "not checked"};
+  return kWords[static_cast<std::size_t>(state)];
 }
 
 std::string json_of(const Inventory& inventory, const Host& host,

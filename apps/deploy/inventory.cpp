@@ -2,21 +2,15 @@
 #include "apps/deploy/inventory.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "services/core/contract/expects.hpp"
 
 namespace stillhand::deploy {
 
 std::string_view name_of(Discovery discovery) {
-  switch (discovery) {
-    case Discovery::kPeers:
-      return "peers";
-    case Discovery::kServer:
-      return "server";
-    case Discovery::kMulticast:
-      return "multicast";
-  }
-  return "";
+  constexpr std::array kNames{"peers", "server", "multicast"};
+  return kNames[static_cast<std::size_t>(discovery)];
 }
 
 const Host* Inventory::find_host(std::string_view name) const {

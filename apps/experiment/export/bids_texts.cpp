@@ -73,20 +73,15 @@ void add_trial_columns(ordered_json& json) {
 }
 
 const char* task_description(TrialKind kind) {
-  switch (kind) {
-    case TrialKind::kIdentification:
-      return "The stick is held by a peg, the hand rests on it, and the platform moves: "
-             "identification of the biodynamic feedthrough";
-    case TrialKind::kFreeIdentification:
-      return "The hand holds the free stick still, and the platform moves: identification of the "
-             "biodynamic feedthrough to position";
-    case TrialKind::kPractice:
-      return "Pursuit tracking on a standing platform, before the measured trials";
-    case TrialKind::kTracking:
-      return "Pursuit tracking of a target on a screen with a stick, on a platform that stands or "
-             "moves laterally";
-  }
-  return "";
+  constexpr std::array kTasks{
+      "The stick is held by a peg, the hand rests on it, and the platform moves: identification of "
+      "the biodynamic feedthrough",
+      "The hand holds the free stick still, and the platform moves: identification of the "
+      "biodynamic feedthrough to position",
+      "Pursuit tracking on a standing platform, before the measured trials",
+      "Pursuit tracking of a target on a screen with a stick, on a platform that stands or moves "
+      "laterally"};
+  return kTasks[static_cast<std::size_t>(kind)];
 }
 
 // Title, task and conditions.

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -140,17 +141,8 @@ std::string day_of_unblinding(const Folder& folder) {
 }  // namespace
 
 const char* name_of(TrialKind kind) {
-  switch (kind) {
-    case TrialKind::kIdentification:
-      return "identification";
-    case TrialKind::kFreeIdentification:
-      return "freestick";
-    case TrialKind::kPractice:
-      return "practice";
-    case TrialKind::kTracking:
-      return "tracking";
-  }
-  return "";
+  constexpr std::array kNames{"identification", "freestick", "practice", "tracking"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 DataSet data_set_of(const Folder& folder, const OnSession& on_session) {

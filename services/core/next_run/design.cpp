@@ -2,6 +2,7 @@
 #include "services/core/next_run/design.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -289,17 +290,8 @@ Measurement repeated(const Measurement& run, const Measurement& recorded,
 }  // namespace
 
 std::string in_words(Family family) {
-  switch (family) {
-    case Family::kNoise:
-      return "band noise";
-    case Family::kMultisine:
-      return "multisine";
-    case Family::kSweep:
-      return "sweep";
-    case Family::kSteps:
-      return "loud and quiet";
-  }
-  return {};
+  constexpr std::array kWords{"band noise", "multisine", "sweep", "loud and quiet"};
+  return kWords[static_cast<std::size_t>(family)];
 }
 
 Ride ride_of(const Design& design, const Bounds& bounds) {
