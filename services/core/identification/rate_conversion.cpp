@@ -101,16 +101,12 @@ double least_decay(double warp) {
 
 // Poles of the left half plane.  None is faster than a quarter of the control rate, where it would
 // lie next to z = -1 and ring; none is slower than kSlowestSettle_s.
-std::vector<Complex> admissible_poles(const Polynomial& denominator, std::size_t order, double warp,
-                                      int& reflected) {
+std::vector<Complex> admissible_poles(const Polynomial& denominator, std::size_t order,
+                                      double warp) {
   const double fastest = 1.0 / warp;
   std::vector<Complex> out = roots(denominator);
-  reflected = 0;
   for (Complex& pole : out) {
-    if (!(pole.real() < 0.0)) {
-      ++reflected;
-      pole = -std::conj(pole);
-    }
+    if (!(pole.real() < 0.0)) pole = -std::conj(pole);
     pole = {std::min(pole.real(), -least_decay(warp)), pole.imag()};
     if (std::abs(pole) > fastest) pole *= fastest / std::abs(pole);
   }
@@ -214,8 +210,7 @@ RateConversion to_control_rate(const DifferenceModel& model, const ConversionBan
   for (int i = 0; i < kIterations; ++i) {
     denominator = next_denominator(want, denominator, static_cast<Eigen::Index>(order));
     RateConversion now;
-    const std::vector<Complex> poles =
-        admissible_poles(denominator, order, warp(band), now.reflected_poles);
+    const std::vector<Complex> poles = admissible_poles(denominator, order, warp(band));
     now.model = discretised(best_numerator(want, from_roots(poles)), poles, warp(band));
     judge(now, want);
     if (now.max_error < best.max_error) best = now;

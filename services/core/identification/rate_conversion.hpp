@@ -19,7 +19,6 @@ struct RateConversion {
   double max_error = 0.0;      ///< Eq. ID-11 over 0 .. upper_hz [-]
   double excited_error = 0.0;  ///< Eq. ID-11 over the excited band [-]
   double peak_gain = 0.0;      ///< largest |H| from 0 to 500 Hz [N s^2/m]
-  int reflected_poles = 0;     ///< [-] unstable poles mirrored
 };
 
 /// Carries a model identified at a low rate to 1 kHz, METHOD Eq. ID-9 to ID-11.  A rational

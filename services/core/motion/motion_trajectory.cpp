@@ -152,15 +152,12 @@ MotionTrajectory::MotionTrajectory(const MotionProfile& profile, const PlatformL
                             : profile.kind == MotionKind::kMultisine ? multisine(profile)
                                                                      : road(profile);
   // Phases that the operator gave are kept.
-  const bool free_phases = profile.components.empty() || profile.kind != MotionKind::kMultisine;
-  const int rounds =
-      free_phases
-          ? limit_peaks(spectrum, {std::min(profile.peak_m_s2, limits.max_acceleration_m_s2),
-                                   limits.max_position_m})
-          : 0;
+  if (profile.components.empty() || profile.kind != MotionKind::kMultisine) {
+    limit_peaks(spectrum,
+                {std::min(profile.peak_m_s2, limits.max_acceleration_m_s2), limits.max_position_m});
+  }
   fill(spectrum);
   refuse_unless_within(profile, limits);
-  report_.phase_changes = rounds;
 }
 
 }  // namespace stillhand::motion

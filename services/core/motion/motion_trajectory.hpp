@@ -21,7 +21,6 @@ struct MotionReport {
   double corner_hz = 0.0;           ///< [Hz] ride: high-pass corner found; otherwise 0
   double removed_share = 0.0;       ///< [-] ride: 1 - var(a) / var(recorded a), measured part
   double removed_slow_share = 0.0;  ///< [-] the part of it that the high-pass took
-  int phase_changes = 0;            ///< [-] rounds of peak limiting that were needed
 };
 
 /// The motion of one trial, synthesised whole when the trial is armed: position, velocity and
