@@ -32,12 +32,4 @@ Polynomial from_roots(const std::vector<std::complex<double>>& roots) {
   return real;
 }
 
-Polynomial product(const Polynomial& left, const Polynomial& right) {
-  Polynomial out(left.size() + right.size() - 1, 0.0);
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    for (std::size_t j = 0; j < right.size(); ++j) out[i + j] += left[i] * right[j];
-  }
-  return out;
-}
-
 }  // namespace stillhand::identification

@@ -17,6 +17,4 @@ std::vector<std::complex<double>> roots(Polynomial polynomial);
 /// imaginary part is dropped.
 Polynomial from_roots(const std::vector<std::complex<double>>& roots);
 
-Polynomial product(const Polynomial& left, const Polynomial& right);
-
 }  // namespace stillhand::identification

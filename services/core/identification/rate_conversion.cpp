@@ -147,7 +147,7 @@ DifferenceModel discretised(const Polynomial& numerator, const std::vector<Compl
   Polynomial above(order + 1, 0.0);
   for (std::size_t k = 0; k <= order; ++k) {
     Polynomial term{numerator[k] / std::pow(warp, static_cast<double>(k)) / scale.real()};
-    for (std::size_t i = 0; i < order; ++i) term = product(term, {i < k ? -1.0 : 1.0, 1.0});
+    for (std::size_t i = 0; i < order; ++i) term = signal::product(term, {i < k ? -1.0 : 1.0, 1.0});
     for (std::size_t i = 0; i <= order; ++i) above[i] += term[i];
   }
   DifferenceModel out;

@@ -54,6 +54,14 @@ std::complex<double> polynomial_at(const std::vector<double>& c, std::complex<do
   return sum;
 }
 
+std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> result(a.size() + b.size() - 1, 0.0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < b.size(); ++j) result[i + j] += a[i] * b[j];
+  }
+  return result;
+}
+
 std::complex<double> response_at(const DifferenceModel& model, double frequency_hz) noexcept {
   const double angle_rad = 2.0 * std::numbers::pi * frequency_hz / model.rate_hz;
   const std::complex<double> back(std::cos(angle_rad), -std::sin(angle_rad));

@@ -36,6 +36,9 @@ std::vector<std::complex<double>> poles(const DifferenceModel& model);
 /// c_0 + c_1 x + ... + c_p x^p by Horner's scheme; 0 without coefficients.
 std::complex<double> polynomial_at(const std::vector<double>& c, std::complex<double> x) noexcept;
 
+/// Coefficients of the product of two polynomials.
+std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b);
+
 /// H(exp(j 2 pi f / rate)) [N s^2/m], Eq. SG-12.  @param frequency_hz  0 to rate / 2
 std::complex<double> response_at(const DifferenceModel& model, double frequency_hz) noexcept;
 

@@ -25,16 +25,11 @@ std::vector<double> quick_poles(const std::vector<double>& denominator, const Si
                                 double least_turn) {
   const double largest =
       std::exp(-1.0 / (kLongestDecay * signals.duration_s() * signals.rate_hz()));
-  std::vector<std::complex<double>> polynomial{1.0};
-  for (const std::complex<double>& pole : signal::poles({1.0, denominator, denominator})) {
-    if (std::abs(std::arg(pole)) >= least_turn && std::abs(pole) > largest) continue;
-    polynomial.emplace_back(0.0);
-    for (std::size_t i = polynomial.size(); i-- > 1;) polynomial[i] -= pole * polynomial[i - 1];
-  }
-  std::vector<double> quick;
-  quick.reserve(polynomial.size());
-  for (const std::complex<double>& c : polynomial) quick.push_back(c.real());
-  return quick;
+  std::vector<std::complex<double>> poles = signal::poles({1.0, denominator, denominator});
+  std::erase_if(poles, [&](const std::complex<double>& pole) {
+    return std::abs(std::arg(pole)) >= least_turn && std::abs(pole) > largest;
+  });
+  return denominator_with(poles);
 }
 
 // Without slow poles (Eq. DG-66) each is quick; of them, those that hold a level count.

@@ -7,8 +7,6 @@
 #include <complex>
 #include <numbers>
 
-#include "services/core/signal/difference_model.hpp"
-
 namespace stillhand::diagnosis {
 namespace {
 
@@ -39,14 +37,6 @@ std::vector<double> denominator_with(const std::vector<std::complex<double>>& po
   }
   std::vector<double> result(all.size());
   std::ranges::transform(all, result.begin(), [](const auto& c) { return c.real(); });
-  return result;
-}
-
-std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> result(a.size() + b.size() - 1, 0.0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < b.size(); ++j) result[i + j] += a[i] * b[j];
-  }
   return result;
 }
 

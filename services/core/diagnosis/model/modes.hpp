@@ -6,8 +6,11 @@
 #include <vector>
 
 #include "services/core/diagnosis/model/model.hpp"
+#include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
+
+using signal::product;
 
 /// The poles of a mode as 1 + m_1 q^-1 + m_2 q^-2, by the matched z transform.
 /// @param damping_ratio  [-] 0 to 1
@@ -15,9 +18,6 @@ std::vector<double> mode_denominator(double frequency_hz, double damping_ratio, 
 
 /// The denominator with these poles, by powers of q^-1; complex ones come in pairs.
 std::vector<double> denominator_with(const std::vector<std::complex<double>>& poles);
-
-/// Coefficients of the product of two polynomials in q^-1.
-std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b);
 
 /// A body taken apart into one of its modes and the rest, Eq. DG-38, for input k:
 ///
