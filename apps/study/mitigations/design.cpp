@@ -76,43 +76,32 @@ std::vector<AddedParts> parts_at(const std::vector<PowerLine>& lines, const Loop
   return out;
 }
 
-// Motion that is left in the worst arm, over that without the shaping; Eq. MI-8.
-double most_motion(const std::vector<PowerLine>& motion, const std::vector<ArmLines>& arms,
+// Power of the motion that comes through the arm, and of the force that a wanted motion needs.
+double motion_power(const PowerLine& line, const admittance::ArmResponse& arm, Complex impedance) {
+  return line.power * std::norm(arm.feedthrough) / std::norm(impedance);
+}
+double force_power(const PowerLine& line, const admittance::ArmResponse& /*arm*/,
+                   Complex impedance) {
+  return line.power * std::norm(impedance);
+}
+
+// RMS in the worst arm, over that without the shaping; Eq. MI-8, and its bound.
+double worst_ratio(const std::vector<PowerLine>& lines, const std::vector<ArmLines>& arms,
                    const std::vector<AddedParts>& parts, const admittance::StickValues& stick,
-                   const cancellation::ImpedanceConfig& impedance) {
+                   const cancellation::ImpedanceConfig& impedance, const auto& power) {
   double worst = 0.0;
   for (const ArmLines& arm : arms) {
     double with = 0.0;
     double without = 0.0;
-    for (std::size_t k = 0; k < motion.size(); ++k) {
+    for (std::size_t k = 0; k < lines.size(); ++k) {
       const Complex alone =
-          stick_impedance_at(stick, s_at(motion[k].frequency_hz)) + arm.at[k].impedance;
-      const double power = motion[k].power * std::norm(arm.at[k].feedthrough);
-      without += power / std::norm(alone);
-      with += power / std::norm(alone + added(parts[k], impedance));
+          stick_impedance_at(stick, s_at(lines[k].frequency_hz)) + arm.at[k].impedance;
+      without += power(lines[k], arm.at[k], alone);
+      with += power(lines[k], arm.at[k], alone + added(parts[k], impedance));
     }
     worst = std::max(worst, std::sqrt(with / without));
   }
   return worst;
-}
-
-// Force for the wanted motion in the worst arm, over that without the shaping; its bound.
-double most_effort(const std::vector<PowerLine>& wanted, const std::vector<ArmLines>& arms,
-                   const std::vector<AddedParts>& parts, const admittance::StickValues& stick,
-                   const cancellation::ImpedanceConfig& impedance) {
-  double most = 0.0;
-  for (const ArmLines& arm : arms) {
-    double with = 0.0;
-    double without = 0.0;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      const Complex alone =
-          stick_impedance_at(stick, s_at(wanted[k].frequency_hz)) + arm.at[k].impedance;
-      without += wanted[k].power * std::norm(alone);
-      with += wanted[k].power * std::norm(alone + added(parts[k], impedance));
-    }
-    most = std::max(most, std::sqrt(with / without));
-  }
-  return most;
 }
 
 }  // namespace
@@ -202,9 +191,11 @@ ImpedanceChoice choose_impedance(const std::vector<KnownPerson>& people,
                                                       bounds.most_stiffness * k / kStiffnesses};
         const double passive_hz = passive_up_to_hz(impedance, stick, timing);
         if (passive_hz < bounds.passive_to_hz) continue;
-        const double effort = most_effort(wanted, willed, willed_parts, stick, impedance);
+        const double effort =
+            worst_ratio(wanted, willed, willed_parts, stick, impedance, force_power);
         if (effort > bounds.most_effort) continue;
-        const double worst = most_motion(motion, moved, moved_parts, stick, impedance);
+        const double worst =
+            worst_ratio(motion, moved, moved_parts, stick, impedance, motion_power);
         if (worst < best.worst) best = {impedance, worst, effort, passive_hz};
       }
     }
