@@ -2,6 +2,7 @@
 #include "services/bus/tap.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -42,15 +43,8 @@ ReaderClass class_of(const WriterQos& qos) {
 constexpr std::size_t kMostForeign = 1000;
 
 const char* profile_of(ReaderClass reader_class) {
-  switch (reader_class) {
-    case ReaderClass::kBestEffort:
-      return "record_stream";
-    case ReaderClass::kReliable:
-      return "record_reliable";
-    case ReaderClass::kReliableLatched:
-      return "event";
-  }
-  return "";
+  constexpr std::array kProfiles{"record_stream", "record_reliable", "event"};
+  return kProfiles[static_cast<std::size_t>(reader_class)];
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "apps/libraries/report/page_style.hpp"
 #include "apps/libraries/report/plot/svg.hpp"
@@ -21,19 +22,8 @@ std::string element(std::string_view tag, std::string_view text) {
 }
 
 const char* class_of(Emphasis emphasis) {
-  switch (emphasis) {
-    case Emphasis::kStrong:
-      return " strong";
-    case Emphasis::kGood:
-      return " good";
-    case Emphasis::kBad:
-      return " bad";
-    case Emphasis::kFaint:
-      return " faint";
-    case Emphasis::kNone:
-      break;
-  }
-  return "";
+  constexpr std::array kClasses{"", " strong", " good", " bad", " faint"};
+  return kClasses[static_cast<std::size_t>(emphasis)];
 }
 
 Align align_of(const Table& table, std::size_t column) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/libraries/report/or_null.hpp"
@@ -74,15 +75,8 @@ std::string left_text(const std::optional<Remaining>& remaining) {
 }
 
 const char* owner(Whose whose) {
-  switch (whose) {
-    case Whose::kRig:
-      return "the rig's";
-    case Whose::kPerson:
-      return "a person's";
-    case Whose::kOpen:
-      break;
-  }
-  return "not decided";
+  constexpr std::array kOwners{"the rig's", "a person's", "not decided"};
+  return kOwners[static_cast<std::size_t>(whose)];
 }
 
 // Whether to mend the rig before modelling each person.
