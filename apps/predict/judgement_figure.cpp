@@ -91,12 +91,14 @@ report::Figure judgement_figure(const Judgement& judgement) {
                           .x = cut(judgement.time_s, at),
                           .y = cut(output.values, at),
                           .line_width_px = 2.2});
-  if (judgement.linear) {
+  const bool without_effects =
+      judgement.linear && judgement.linear->values == judgement.carried.values;
+  if (judgement.linear && !without_effects) {
     add_model("linear", *judgement.linear, report::Colour::kWarning, Kind::kDashedLine, judgement,
               at, above, below);
   }
-  add_model("with effects", judgement.carried, report::Colour::kAccent, Kind::kLine, judgement, at,
-            above, below);
+  add_model(without_effects ? "linear, no effect is saved" : "with effects", judgement.carried,
+            report::Colour::kAccent, Kind::kLine, judgement, at, above, below);
   for (Panel* panel : {&above, &below}) {
     panel->x.low = judgement.time_s[at.first];
     panel->x.high = judgement.time_s[at.end - 1];

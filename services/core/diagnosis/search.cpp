@@ -7,7 +7,9 @@
 #include <limits>
 #include <optional>
 
+#include "services/core/diagnosis/body_order.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
+#include "services/core/diagnosis/model/stability.hpp"
 #include "services/core/diagnosis/recordings_out.hpp"
 #include "services/core/diagnosis/surrogate_round.hpp"
 
@@ -70,14 +72,14 @@ class Forward {
   Forward& operator=(const Forward&) = delete;
   Forward(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
           const SearchOptions& options, const ForEach& for_each,
-          const std::function<bool(const std::string&)>& progress)
+          const std::function<bool(const std::string&)>& progress, bool rising_springs)
       : baseline_(baseline),
         signals_(signals),
         blocks_(blocks),
         options_(options),
         progress_(progress),
         impulse_response_(fit_impulse_response(screened_part(signals))),
-        settings_{blocks, impulse_response_, baseline.order, options, for_each} {}
+        settings_{blocks, impulse_response_, baseline.order, options, for_each, rising_springs} {}
 
   [[nodiscard]] SearchResult from_baseline() const {
     SearchResult result;
@@ -361,12 +363,9 @@ class Forward {
   const RoundSettings settings_;
 };
 
-}  // namespace
-
-SearchResult search(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
-                    const SearchOptions& options, const ForEach& for_each,
-                    const std::function<bool(const std::string&)>& progress) {
-  const Forward forward(baseline, signals, blocks, options, for_each, progress);
+// From the baseline, and once more without the bursts from the start, Eq. DG-53.
+SearchResult searched(const Forward& forward, const Signals& signals, const Blocks& blocks,
+                      const SearchOptions& options) {
   SearchResult result = forward.from_baseline();
   const auto bursts = std::ranges::find_if(result.additions, [](const Addition& addition) {
     return passes_over_samples(addition.tried[addition.chosen]);
@@ -385,6 +384,20 @@ SearchResult search(const Baseline& baseline, const Signals& signals, const Bloc
   const auto by_error = [](const Trial&) { return false; };
   const std::vector<Trial> both{ended(result), ended(other)};
   return chosen_of(both, without_any, options, by_error) == 0 ? result : other;
+}
+
+}  // namespace
+
+SearchResult search(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
+                    const SearchOptions& options, const ForEach& for_each,
+                    const std::function<bool(const std::string&)>& progress) {
+  const Forward any(baseline, signals, blocks, options, for_each, progress, false);
+  SearchResult result = searched(any, signals, blocks, options);
+  if (!turns_round(result.model, signals)) return result;
+  const Forward rising(baseline, signals, blocks, options, for_each, progress, true);
+  SearchResult other = searched(rising, signals, blocks, options);
+  const HeldOut before = held_out(result.model, signals, blocks);
+  return outdoes(before, held_out(other.model, signals, blocks), options) ? result : other;
 }
 
 }  // namespace stillhand::diagnosis

@@ -11,6 +11,7 @@
 #include "services/core/diagnosis/fitting/shape_exchange.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/stability.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 
 namespace stillhand::diagnosis {
@@ -54,6 +55,15 @@ Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, in
 
 namespace {
 
+Trial judged(const RoundSettings& settings, Model model, const Signals& signals,
+             const Blocks& blocks, int iterations, bool refitting) {
+  Trial trial = judged_trial(std::move(model), signals, blocks, iterations, refitting);
+  if (settings.rising_springs && turns_round(trial.model, signals)) {
+    trial.rmse = std::numeric_limits<double>::infinity();
+  }
+  return trial;
+}
+
 bool same_shape(const Model& a, const Model& b) {
   return a.effects.back().kind == b.effects.back().kind &&
          a.effects.back().form == b.effects.back().form;
@@ -71,20 +81,21 @@ void lift_on_part(Trial& best, const Part& part, const Signals& signals,
   const int iterations = settings.options.fit_iterations;
   if (passes_through_body(best.model)) return;
   Trial richest =
-      part.is_whole ? best : judged_trial(best.model, part.signals, part.blocks, 1, false);
+      part.is_whole ? best : judged(settings, best.model, part.signals, part.blocks, 1, false);
   const std::size_t own = best.model.body.order();
   while (static_cast<int>(richest.model.body.order()) < settings.order + kMorePoles) {
     Model more = lifted(richest.model);
     const bool is_asked_for = static_cast<int>(more.body.order()) <= settings.order;
     if (!is_asked_for && rows < kRowsForANumber * static_cast<double>(complexity(more))) break;
     Trial richer =
-        judged_trial(std::move(more), part.signals, part.blocks, iterations, part.is_whole);
+        judged(settings, std::move(more), part.signals, part.blocks, iterations, part.is_whole);
     if (!(richer.rmse < kWorthPoles * richest.rmse)) break;
     richest = std::move(richer);
   }
   if (richest.model.body.order() == own) return;
   if (!part.is_whole) {
-    richest = judged_trial(std::move(richest.model), signals, settings.blocks, iterations, true);
+    richest =
+        judged(settings, std::move(richest.model), signals, settings.blocks, iterations, true);
     if (!(richest.rmse < kWorthPoles * best.rmse)) return;
   }
   best = std::move(richest);
@@ -105,17 +116,18 @@ void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals
     if (best == all.end() || best->rmse > kGains * current_rmse) return;
     lift_on_part(*best, part, signals, settings);
     const Model from = best->model;
-    const double best_rmse =
-        part.is_whole ? best->rmse : judged_trial(from, part.signals, part.blocks, 1, false).rmse;
+    const double best_rmse = part.is_whole
+                                 ? best->rmse
+                                 : judged(settings, from, part.signals, part.blocks, 1, false).rmse;
     settings.for_each(all.size(), [&](std::size_t i) {
       if (!inside(all[i]) || &all[i] == &*best) return;
       const auto start = with_shape_of(all[i].model.effects.back(), from, signals);
       if (!start) return;
       Trial other =
-          judged_trial(*start, part.signals, part.blocks, options.screening_iterations, false);
+          judged(settings, *start, part.signals, part.blocks, options.screening_iterations, false);
       if (!(other.rmse < kNear * best_rmse) || (part.is_whole && other.rmse >= all[i].rmse)) return;
-      other = judged_trial(std::move(other.model), signals, settings.blocks, options.fit_iterations,
-                           true);
+      other = judged(settings, std::move(other.model), signals, settings.blocks,
+                     options.fit_iterations, true);
       if (other.rmse < all[i].rmse) all[i] = std::move(other);
     });
     std::ranges::stable_sort(all, by_rmse);
@@ -209,8 +221,8 @@ void fit_on_part(Screened& screened, std::size_t count, const Part& part,
     if (i < kFewest && !screened.first_fitted) {
       start_afresh(all[i].model, part.signals, settings.order);
     }
-    all[i] = judged_trial(std::move(all[i].model), part.signals, part.blocks,
-                          settings.options.fit_iterations, false);
+    all[i] = judged(settings, std::move(all[i].model), part.signals, part.blocks,
+                    settings.options.fit_iterations, false);
     all[i].own_body = own_body;
   });
   std::ranges::stable_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), by_rmse);
@@ -249,9 +261,10 @@ Screened screened_trials(const Model& current, double current_rmse, const Signal
     Model model = current;
     if (proposals[i].body) model.body = *proposals[i].body;
     model.effects.push_back(proposals[i].effect);
-    all[i] = is_hopeless(proposals[i]) ? not_fitted(std::move(model))
-                                       : judged_trial(std::move(model), part.signals, part.blocks,
-                                                      settings.options.screening_iterations, false);
+    all[i] = is_hopeless(proposals[i])
+                 ? not_fitted(std::move(model))
+                 : judged(settings, std::move(model), part.signals, part.blocks,
+                          settings.options.screening_iterations, false);
     all[i].own_body = proposals[i].body.has_value();
   });
   std::ranges::stable_sort(all, by_rmse);
@@ -280,8 +293,8 @@ std::vector<Trial> finished_trials(Screened screened, double current_rmse, const
                       [&](std::size_t i) { start_afresh(all[i].model, signals, settings.order); });
   }
   settings.for_each(screened.near, [&](std::size_t i) {
-    all[i] = judged_trial(std::move(all[i].model), signals, settings.blocks,
-                          settings.options.fit_iterations, true);
+    all[i] = judged(settings, std::move(all[i].model), signals, settings.blocks,
+                    settings.options.fit_iterations, true);
   });
   std::ranges::stable_sort(all, by_rmse);
   exchange_shapes(all, current_rmse, signals, settings);
@@ -312,8 +325,8 @@ std::optional<Trial> curve_after(const Trial& law, const Part& part, const Signa
   }
   std::optional<Trial> best;
   for (Model& start : starts) {
-    Trial trial = judged_trial(std::move(start), part.signals, part.blocks,
-                               settings.options.fit_iterations, part.is_whole);
+    Trial trial = judged(settings, std::move(start), part.signals, part.blocks,
+                         settings.options.fit_iterations, part.is_whole);
     if (std::isfinite(trial.rmse) && (!best || trial.rmse < best->rmse)) best = std::move(trial);
   }
   return best;
@@ -341,7 +354,7 @@ std::optional<Trial> curve_in_place(const Trial& law, const std::vector<Trial>& 
   std::optional<Trial> curve = curve_after(law, part, signals, settings);
   if (!curve) return {};
   const auto ended = [&](const Model& model) {
-    return judged_trial(model, signals, settings.blocks, settings.options.fit_iterations, true);
+    return judged(settings, model, signals, settings.blocks, settings.options.fit_iterations, true);
   };
   const std::optional<Model> read = read_by_law(curve->model, tried, part.signals);
   if (!part.is_whole) curve = ended(curve->model);

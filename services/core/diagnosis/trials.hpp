@@ -46,6 +46,7 @@ struct RoundSettings {
   int order;                                ///< of the body, before it was reduced
   const SearchOptions& options;
   const ForEach& for_each;
+  bool rising_springs = false;  ///< true: a spring that turns round, Eq. DG-95, does not count
 };
 
 /// A round after the screening.

@@ -9,7 +9,11 @@
 #include <limits>
 #include <numbers>
 
+#include "services/core/diagnosis/fitting/baseline.hpp"
+#include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/stability.hpp"
 #include "services/core/diagnosis/recordings_out.hpp"
+#include "services/core/diagnosis/trials.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis::search_test {
@@ -229,6 +233,38 @@ TEST(RecordingsOutTest, AnEffectIsRefutedThatHelpsOneAtMostAndHarmsAnother) {
   EXPECT_FALSE(refuted({0.3, 0.2, -0.5}, kLeast)) << "two bear it out";
   EXPECT_TRUE(refuted({0.3, -0.02}, kLeast));
   EXPECT_TRUE(refuted({0.3, std::numeric_limits<double>::quiet_NaN()}, kLeast));
+}
+
+// A(1) = 0.034: 2 e z reaches it beyond 1.4 N, within the ride.
+TEST(SearchTest, TrialsWhoseSpringTurnsRoundCountUnlessTheyAreForbidden) {
+  const Model planted =
+      made::model_of(made::two_pole_body(), {{"asymmetry",
+                                              "square of the output",
+                                              {},
+                                              {{"threshold", "N", 1.0, 1e-3, 1e3}},
+                                              {0.012, 0}}});
+  Measurement measurement =
+      made::measurement_of({{"u", "V", made::ride(3000, 1)}, {"y", "N", made::white(3000, 2)}});
+  const FreeRun run = free_run(planted, {measurement, {"u"}, "y"});
+  ASSERT_TRUE(run.finite);
+  std::vector<double>& y = measurement.channels.back().values;
+  for (std::size_t n = 0; n < y.size(); ++n) y[n] = run.body[n] + 0.05 * y[n];
+  const Signals signals(measurement, {"u"}, "y");
+  const Blocks blocks = make_blocks(signals);
+  const Model linear = fit_baseline(signals, blocks, 2).model;
+  const double linear_rmse = held_out(linear, signals, blocks).rmse();
+  const ImpulseResponse response = fit_impulse_response(signals);
+  const SearchOptions options;
+  const ForEach for_each = in_order;
+  for (const bool rising : {false, true}) {
+    const RoundSettings settings{blocks, response, 2, options, for_each, rising};
+    const std::vector<Trial> sut =
+        finished_trials(screened_trials(linear, linear_rmse, signals, settings, Shapes::kNamed),
+                        linear_rmse, signals, settings);
+    ASSERT_TRUE(std::isfinite(sut.front().rmse));
+    EXPECT_EQ(turns_round(sut.front().model, signals), !rising)
+        << sut.front().model.effects[0].form;
+  }
 }
 
 }  // namespace stillhand::diagnosis::search_test

@@ -56,6 +56,16 @@ TEST(StabilityTest, ALoopThatSwingsByItselfIsRefused) {
   EXPECT_EQ(stability_of(sut, signals_of()), Stability::kRefused);
 }
 
+// A(1) = 0.034 and a slope of 2 e_0 z on +-2 N, held at +-3 N: it turns round beyond 0.8 N, or at
+// none of the held places.
+TEST(StabilityTest, ASpringTurnsRoundWhereItsStiffnessChangesItsSign) {
+  const Model turning = looped("asymmetry", "square of the output", 1.0, 0.02, 0.0);
+  EXPECT_TRUE(turns_round(turning, signals_of()));
+  const Model rising = looped("asymmetry", "square of the output", 1.0, 0.002, 0.0);
+  EXPECT_FALSE(turns_round(rising, signals_of()));
+  EXPECT_FALSE(turns_round(made::model_of(made::two_pole_body()), signals_of()));
+}
+
 // (1 - b q^-1)^3: rounding of 1e-16 moves a triple root by its third root, 5e-6, beyond b.
 TEST(StabilityTest, PolesOnTheBoundOfTheFitAreStable) {
   constexpr double kBound = 0.904837;

@@ -142,5 +142,12 @@ TEST(JudgementTest, ThePictureShowsBothModelsAndWhatTheyLeave) {
   for (const double left : sut.panels[1].series[1].y) ASSERT_NEAR(left, 0.0, 1e-12);
 }
 
+TEST(JudgementTest, ThePictureShowsOneModelWhereNoEffectIsSaved) {
+  const report::Figure sut = judgement_figure(judgement_of(kHalf, kHalf));
+  ASSERT_EQ(sut.panels[0].series.size(), 2U);
+  EXPECT_THAT(sut.panels[0].series[1].label, HasSubstr("no effect is saved"));
+  EXPECT_EQ(sut.panels[1].series.size(), 1U);
+}
+
 }  // namespace
 }  // namespace stillhand::predict::judgement_test

@@ -10,6 +10,7 @@
 #include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/diagnosis/model/model_run.hpp"
 #include "services/core/diagnosis/model/other_phases.hpp"
+#include "services/core/diagnosis/model/seen_range.hpp"
 #include "services/core/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
@@ -170,6 +171,20 @@ bool is_proved(const Body& body, const Effect& effect) {
 }
 
 }  // namespace
+
+bool turns_round(const Model& fitted, const Signals& signals) {
+  if (feedback_of(fitted).size() != 1) return false;
+  Model model = fitted;
+  note_seen(model, signals);
+  const Effect& effect = *feedback_of(model).front();
+  const Polynomial& a = model.body.denominator;
+  const Slopes slopes = slopes_of(effect);
+  const double linear = at(a, 0.0).real();
+  const double path = at(loop_path(effect, model.body.order()).to_argument(a), 0.0).real();
+  const auto [least, most] =
+      std::minmax({linear - slopes.least * path, linear - slopes.most * path});
+  return least < 0.0 && most > 0.0;
+}
 
 Stability stability_of(const Model& fitted, const Signals& signals) {
   // As a file's reader has it: without the fit's bounds, on which a pole lies to rounding.
