@@ -5,6 +5,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/files/settings/placed_error.hpp"
 #include "services/files/settings/yaml_text.hpp"
 
 namespace stillhand::experiment {
@@ -139,12 +140,14 @@ Design design_of(const std::string& yaml, const std::string& origin) {
   settings::SectionReader reader(root, "experiment");
   Design::fields(reader, design);
   if (const Section* entry = reader.find("conditions")) design.conditions = words_of(*entry);
-  if (const Section* entry = reader.find("order")) design.order = order_named(entry->text);
+  if (const Section* entry = reader.find("order")) {
+    design.order = settings::placed(entry->place, [entry] { return order_named(entry->text); });
+  }
   if (const Section* entry = reader.find("instructions")) design.instructions = words_of(*entry);
   if (const Section* entry = reader.find("questions")) design.questions = questions_of(*entry);
   if (const Section* entry = reader.find("comparisons")) design.comparisons = words_of(*entry);
   reader.refuse_unknown();
-  check(design);
+  settings::placed(origin, [&design] { check(design); });
   return design;
 }
 
