@@ -126,10 +126,10 @@ Law term_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tr
   const std::vector<double> force = force_of(effect);
   Panel panel;
   panel.x.label = axis_label(over.name, over.unit);
-  panel.y.label = axis_label("force of the effect", evidence.found.output_unit);
+  panel.y.label = axis_label("effect at the output", evidence.found.output_unit);
   if (has_memory(evidence, over.values, force)) {
     add_loop(evidence, over.values, force, panel);
-    return {{panel}, "One loop of the effect's force, at the largest motion."};
+    return {{panel}, "One loop of the effect, at the largest motion."};
   }
   const std::vector<std::size_t> samples = spread_over(evidence, over.values);
   const auto values_at = [&](const std::vector<double>& all) {
@@ -155,13 +155,12 @@ Law term_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tr
                   return values_at(force_of(model.effects[at.which]));
                 }),
                 panel);
-  return {
-      {panel},
-      "The effect's force with the 95 % band of its numbers, and means of the residual over bins.",
-      true};
+  return {{panel},
+          "The effect with the 95 % band of its numbers, and means of the residual over bins.",
+          true};
 }
 
-// phi over its argument, both as forces at the output, Eq. DG-74 and DG-75.
+// phi over its argument, both as they show at the output, Eq. DG-74 and DG-75.
 Law loop_law(const Evidence& evidence, const SizeCase& at) {
   const diagnosis::FreeRun& run = evidence.after.run;
   const double threshold = diagnosis::effect_kind(at.effect().kind).feedback(at.effect()).threshold;
@@ -171,8 +170,8 @@ Law loop_law(const Evidence& evidence, const SizeCase& at) {
   for (double& each : y) each *= diagnosis::output_over_phi(at);
   const std::string& unit = evidence.found.output_unit;
   Panel panel;
-  panel.x.label = axis_label("motion inside the body, as force at the output", unit);
-  panel.y.label = axis_label("force of the nonlinearity, at 0 Hz", unit);
+  panel.x.label = axis_label("motion inside the body, as it shows at the output", unit);
+  panel.y.label = axis_label("nonlinearity at the output, at 0 Hz", unit);
   if (has_memory(evidence, x, y)) {
     add_loop(evidence, x, y, panel);
     return {{panel}, "One loop of the nonlinearity, at the largest motion (DG-74, DG-75)."};

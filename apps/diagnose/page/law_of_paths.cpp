@@ -135,8 +135,8 @@ Law map_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tra
   };
   Panel panel;
   const std::string unit = at_input ? from.unit : evidence.found.output_unit;
-  panel.x.label = axis_label(at_input ? from.name : "force before it", unit);
-  panel.y.label = axis_label(at_input ? from.name + " that acts" : "force behind it", unit);
+  panel.x.label = axis_label(at_input ? from.name : "output before it", unit);
+  panel.y.label = axis_label(at_input ? from.name + " that acts" : "output behind it", unit);
   panel.series.push_back({.label = "without it",
                           .kind = Kind::kDottedLine,
                           .colour = report::Colour::kNeutral,
