@@ -166,6 +166,17 @@ void add_mitigations(report::Page& page, const StudyRecord& record) {
   page.table(mitigations_table(analysis));
 }
 
+// "damping: platform moves, ..." of each mitigation.
+std::vector<std::string> meanings(const Analysis& analysis) {
+  std::vector<std::string> lines;
+  for (const auto& [condition, metrics] : analysis.conditions) {
+    if (!is_mitigation(condition)) continue;
+    lines.push_back(
+        fmt::format("{}: {}", session::name_of(condition), session::row_of(condition).meaning));
+  }
+  return lines;
+}
+
 void add_cancellers(report::Page& page, const Analysis& analysis) {
   const bool mitigates = std::ranges::any_of(
       analysis.conditions, [](const auto& entry) { return is_mitigation(entry.first); });
@@ -181,10 +192,11 @@ void add_cancellers(report::Page& page, const Analysis& analysis) {
   }
   if (mitigates) {
     text +=
-        " The others are mitigations of stillhand lab --conditions. A mitigation that acts on "
-        "the command leaves the motor off.";
+        " The others are mitigations of stillhand lab --conditions. The figures of traces, moving "
+        "errors and open loops leave them out.";
   }
   page.paragraph(text);
+  if (mitigates) page.list(meanings(analysis));
   page.table(mitigations_table(analysis));
   if (!analysis.restoration.empty()) page.table(restorations_table(analysis));
   if (cancels_beyond) page.table(steps_table(analysis));
