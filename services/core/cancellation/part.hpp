@@ -48,7 +48,7 @@ struct PartRow {
   bool drives_motor = false;
   bool answers_stick =
       false;  ///< with a force that follows the stick's motion, not the feedthrough
-  bool filters_command = false;              ///< behind all that is taken off the command
+  bool filters_command = false;  ///< behind all that is taken off the command; a trial has one
   std::optional<PartKind> in_place_of = {};  ///< never stands next to this one
   /// None: recipe_of() reads it, because the recipe holds models for it.
   std::unique_ptr<PartStep> (*make)(const Part& part) = nullptr;
@@ -83,11 +83,7 @@ inline constexpr std::array kPartRows{
     PartRow{.kind = PartKind::kLmsSignal, .values = 1, .make = make_lms_signal},
     // On the command, MI-1: frequency [Hz], damping ratio [-].
     PartRow{.kind = PartKind::kLowPass, .values = 2, .filters_command = true, .make = make_shaping},
-    PartRow{.kind = PartKind::kNotch,
-            .values = 2,
-            .filters_command = true,
-            .in_place_of = PartKind::kLowPass,
-            .make = make_shaping},
+    PartRow{.kind = PartKind::kNotch, .values = 2, .filters_command = true, .make = make_shaping},
 };
 
 /// None: a number that is no kind.

@@ -112,6 +112,15 @@ TEST(ExperimentFileTest, TheOpenedFileNamesTheConditionOfEveryLabelAndTrial) {
   }
 }
 
+TEST(ExperimentFileTest, EveryConditionOfAnExperimentHasALabel) {
+  const std::size_t all = session::conditions_of(session::kExperimentConditions).size();
+  const std::vector<std::string> labels = labels_of(all, Assignment{5}, 0);
+  EXPECT_EQ(std::set<std::string>(labels.begin(), labels.end()).size(), all);
+  for (const std::string& label : labels) {
+    EXPECT_FALSE(session::condition_named(label)) << label;
+  }
+}
+
 // Who recognises a trial of one participant must not know the others'.
 TEST(ExperimentFileTest, EachParticipantHasLabelsOfItsOwn) {
   std::set<std::vector<std::string>> all;

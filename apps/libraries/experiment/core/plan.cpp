@@ -45,7 +45,8 @@ void add_bare(Plan& plan, StepKind kind, std::int64_t block) {
 std::vector<std::string> labels_of(std::size_t conditions, const Assignment& assignment,
                                    std::size_t participant) {
   // No letter of a condition, nor of the two identifications.
-  constexpr const char* kLabels[]{"X", "Y", "Z", "W", "V", "U", "T", "S", "R", "Q", "O", "N", "M"};
+  constexpr const char* kLabels[]{"X", "Y", "Z", "W", "V", "U", "T", "S", "R",
+                                  "Q", "O", "N", "M", "L", "K", "H", "G"};
   STILLHAND_EXPECTS(conditions <= std::size(kLabels));
   std::vector<std::string> labels{kLabels, kLabels + conditions};
   std::mt19937_64 engine(derived_seed(assignment.order_seed, SeedUse::kLabels, participant + 1));

@@ -111,10 +111,11 @@ void add(const Part& part, const std::optional<signal::DifferenceModel>& positio
   recipe.parts.push_back(part);
 }
 
-// Parts that would overwrite each other in a recipe have one.
+// Parts that would overwrite each other in a recipe have one; so do all filters of the command.
 PartKind place_of(PartKind kind) {
   const PartRow* const row = row_of(kind);
-  return row == nullptr ? kind : row->in_place_of.value_or(kind);
+  if (row == nullptr) return kind;
+  return row->filters_command ? PartKind::kLowPass : row->in_place_of.value_or(kind);
 }
 
 }  // namespace
