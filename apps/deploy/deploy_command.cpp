@@ -72,7 +72,7 @@ const Host& this_host(const Inventory& inventory, const std::string& name) {
 
 const char* word_of(State state) {
   constexpr std::array kWords{"good", "wrong", "not checked"};
-  return kWords[static_cast<std::size_t>(state)];
+  return kWords.at(static_cast<std::size_t>(state));
 }
 
 std::string json_of(const Inventory& inventory, const Host& host,

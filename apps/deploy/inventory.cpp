@@ -10,7 +10,7 @@ namespace stillhand::deploy {
 
 std::string_view name_of(Discovery discovery) {
   constexpr std::array kNames{"peers", "server", "multicast"};
-  return kNames[static_cast<std::size_t>(discovery)];
+  return kNames.at(static_cast<std::size_t>(discovery));
 }
 
 const Host* Inventory::find_host(std::string_view name) const {

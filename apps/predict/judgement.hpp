@@ -62,8 +62,8 @@ std::string judgement_table(const Judgement& judgement);
 /// @param origin  of the model; this one and the judgement are null in the text if there is none
 std::string judgement_json(const Prediction& prediction, const std::optional<Judgement>& judgement,
                            const std::optional<report::Provenance>& origin);
-/// Measured, linear and carried over an excerpt; below, the residuals.  The excerpt is the one
-/// whose errors are nearest to those of the whole recording.
+/// Measured, linear and carried (one line where they are the same) over an excerpt; below, the
+/// residuals.  The excerpt is the one whose errors are nearest to those of the whole recording.
 report::Figure judgement_figure(const Judgement& judgement);
 
 }  // namespace stillhand::predict

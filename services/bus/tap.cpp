@@ -44,7 +44,7 @@ constexpr std::size_t kMostForeign = 1000;
 
 const char* profile_of(ReaderClass reader_class) {
   constexpr std::array kProfiles{"record_stream", "record_reliable", "event"};
-  return kProfiles[static_cast<std::size_t>(reader_class)];
+  return kProfiles.at(static_cast<std::size_t>(reader_class));
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ const char* task_description(TrialKind kind) {
       "Pursuit tracking on a standing platform, before the measured trials",
       "Pursuit tracking of a target on a screen with a stick, on a platform that stands or moves "
       "laterally"};
-  return kTasks[static_cast<std::size_t>(kind)];
+  return kTasks.at(static_cast<std::size_t>(kind));
 }
 
 // Title, task and conditions.
@@ -241,7 +241,10 @@ std::string motion_json(const Design& design, const ExportedTrial& trial,
                         const recording::Recording& rows) {
   ordered_json json{{"TaskName", name_of(trial.kind)},
                     {"TaskDescription", task_description(trial.kind)}};
-  const std::string instructions = fmt::format("{}", fmt::join(design.instructions, " "));
+  std::string instructions;
+  for (const std::string& line : design.instructions) {
+    instructions += (instructions.empty() ? "" : " ") + line;
+  }
   if (!instructions.empty()) json["Instructions"] = instructions;
   json["TrackingSystemName"] = "rig";
   json["SamplingFrequency"] = rows.rate_hz;

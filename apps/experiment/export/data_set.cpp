@@ -142,7 +142,7 @@ std::string day_of_unblinding(const Folder& folder) {
 
 const char* name_of(TrialKind kind) {
   constexpr std::array kNames{"identification", "freestick", "practice", "tracking"};
-  return kNames[static_cast<std::size_t>(kind)];
+  return kNames.at(static_cast<std::size_t>(kind));
 }
 
 DataSet data_set_of(const Folder& folder, const OnSession& on_session) {

@@ -23,7 +23,7 @@ std::string element(std::string_view tag, std::string_view text) {
 
 const char* class_of(Emphasis emphasis) {
   constexpr std::array kClasses{"", " strong", " good", " bad", " faint"};
-  return kClasses[static_cast<std::size_t>(emphasis)];
+  return kClasses.at(static_cast<std::size_t>(emphasis));
 }
 
 Align align_of(const Table& table, std::size_t column) {

@@ -76,7 +76,7 @@ std::string left_text(const std::optional<Remaining>& remaining) {
 
 const char* owner(Whose whose) {
   constexpr std::array kOwners{"the rig's", "a person's", "not decided"};
-  return kOwners[static_cast<std::size_t>(whose)];
+  return kOwners.at(static_cast<std::size_t>(whose));
 }
 
 // Whether to mend the rig before modelling each person.

@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include "services/core/diagnosis/body_order.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/model/stability.hpp"
 #include "services/core/diagnosis/recordings_out.hpp"
@@ -363,27 +362,40 @@ class Forward {
   const RoundSettings settings_;
 };
 
-// From the baseline, and once more without the bursts from the start, Eq. DG-53.
-SearchResult searched(const Forward& forward, const Signals& signals, const Blocks& blocks,
-                      const SearchOptions& options) {
-  SearchResult result = forward.from_baseline();
-  const auto bursts = std::ranges::find_if(result.additions, [](const Addition& addition) {
-    return passes_over_samples(addition.tried[addition.chosen]);
-  });
-  if (bursts == result.additions.end() || bursts == result.additions.begin()) return result;
-  SearchResult other = forward.without_bursts(bursts->tried[bursts->chosen].model.effects.back());
-  if (other.additions.empty() || same_effects(other.model, result.model)) return result;
+// The one with less error, or with fewer numbers if they tie, Eq. DG-50 and DG-17.
+// @param without_any  [unit of the output] held-out error without what they found
+const SearchResult& better_of(const SearchResult& one, const SearchResult& other,
+                              double without_any, const Signals& signals, const Blocks& blocks,
+                              const SearchOptions& options) {
   const auto ended = [&](const SearchResult& each) {
     Trial trial{each.model, held_out(each.model, signals, blocks)};
     trial.rmse =
         trial.held_out.finite ? trial.held_out.rmse() : std::numeric_limits<double>::infinity();
     return trial;
   };
-  const double without_any = other.additions.front().after.rmse();
   // Which kind comes last says nothing of two searches: the error decides.
   const auto by_error = [](const Trial&) { return false; };
-  const std::vector<Trial> both{ended(result), ended(other)};
-  return chosen_of(both, without_any, options, by_error) == 0 ? result : other;
+  const std::vector<Trial> both{ended(one), ended(other)};
+  return chosen_of(both, without_any, options, by_error) == 0 ? one : other;
+}
+
+const Addition* bursts_of(const SearchResult& result) {
+  const auto bursts = std::ranges::find_if(result.additions, [](const Addition& addition) {
+    return passes_over_samples(addition.tried[addition.chosen]);
+  });
+  return bursts == result.additions.end() ? nullptr : &*bursts;
+}
+
+// From the baseline, and once more without the bursts from the start, Eq. DG-53.
+SearchResult searched(const Forward& forward, const Signals& signals, const Blocks& blocks,
+                      const SearchOptions& options) {
+  SearchResult result = forward.from_baseline();
+  const Addition* const bursts = bursts_of(result);
+  if (bursts == nullptr || bursts == &result.additions.front()) return result;
+  const SearchResult other =
+      forward.without_bursts(bursts->tried[bursts->chosen].model.effects.back());
+  if (other.additions.empty() || same_effects(other.model, result.model)) return result;
+  return better_of(result, other, other.additions.front().after.rmse(), signals, blocks, options);
 }
 
 }  // namespace
@@ -395,9 +407,12 @@ SearchResult search(const Baseline& baseline, const Signals& signals, const Bloc
   SearchResult result = searched(any, signals, blocks, options);
   if (!turns_round(result.model, signals)) return result;
   const Forward rising(baseline, signals, blocks, options, for_each, progress, true);
-  SearchResult other = searched(rising, signals, blocks, options);
-  const HeldOut before = held_out(result.model, signals, blocks);
-  return outdoes(before, held_out(other.model, signals, blocks), options) ? result : other;
+  const SearchResult other = searched(rising, signals, blocks, options);
+  // Errors of other samples are not compared.
+  const bool comparable = (bursts_of(result) == nullptr) == (bursts_of(other) == nullptr);
+  if (!comparable || other.additions.empty() || turns_round(other.model, signals)) return result;
+  return better_of(result, other, held_out(baseline.model, signals, blocks).rmse(), signals, blocks,
+                   options);
 }
 
 }  // namespace stillhand::diagnosis

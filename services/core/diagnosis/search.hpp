@@ -54,6 +54,8 @@ struct SearchResult {
 
 /// Forward selection with re-testing, METHOD "Selection": propose, fit jointly, compare on held-out
 /// blocks, add the simplest of the best; after each addition every earlier one is tested again.
+/// Made once more where bursts (DG-53) or a spring that turns round (DG-95) may have misled it;
+/// then `progress` begins again.
 SearchResult search(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
                     const SearchOptions& options, const ForEach& for_each,
                     const std::function<bool(const std::string&)>& progress);

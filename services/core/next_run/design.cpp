@@ -291,7 +291,7 @@ Measurement repeated(const Measurement& run, const Measurement& recorded,
 
 std::string in_words(Family family) {
   constexpr std::array kWords{"band noise", "multisine", "sweep", "loud and quiet"};
-  return kWords[static_cast<std::size_t>(family)];
+  return kWords.at(static_cast<std::size_t>(family));
 }
 
 Ride ride_of(const Design& design, const Bounds& bounds) {

@@ -251,7 +251,8 @@ TEST(SearchTest, TrialsWhoseSpringTurnsRoundCountUnlessTheyAreForbidden) {
   for (std::size_t n = 0; n < y.size(); ++n) y[n] = run.body[n] + 0.05 * y[n];
   const Signals signals(measurement, {"u"}, "y");
   const Blocks blocks = make_blocks(signals);
-  const Model linear = fit_baseline(signals, blocks, 2).model;
+  const Baseline baseline = fit_baseline(signals, blocks, 2);
+  const Model& linear = baseline.model;
   const double linear_rmse = held_out(linear, signals, blocks).rmse();
   const ImpulseResponse response = fit_impulse_response(signals);
   const SearchOptions options;
@@ -265,6 +266,9 @@ TEST(SearchTest, TrialsWhoseSpringTurnsRoundCountUnlessTheyAreForbidden) {
     EXPECT_EQ(turns_round(sut.front().model, signals), !rising)
         << sut.front().model.effects[0].form;
   }
+  const SearchResult found =
+      search(baseline, signals, blocks, options, for_each, [](const std::string&) { return true; });
+  EXPECT_TRUE(turns_round(found.model, signals)) << "no other form explains as much";
 }
 
 }  // namespace stillhand::diagnosis::search_test

@@ -56,8 +56,7 @@ TEST(StabilityTest, ALoopThatSwingsByItselfIsRefused) {
   EXPECT_EQ(stability_of(sut, signals_of()), Stability::kRefused);
 }
 
-// A(1) = 0.034 and a slope of 2 e_0 z on +-2 N, held at +-3 N: it turns round beyond 0.8 N, or at
-// none of the held places.
+// A(1) = 0.034 and a slope of 2 e_0 z on +-2 N: it turns round beyond 0.8 N, or nowhere.
 TEST(StabilityTest, ASpringTurnsRoundWhereItsStiffnessChangesItsSign) {
   const Model turning = looped("asymmetry", "square of the output", 1.0, 0.02, 0.0);
   EXPECT_TRUE(turns_round(turning, signals_of()));

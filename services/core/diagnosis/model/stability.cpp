@@ -31,18 +31,17 @@ struct Slopes {
 };
 
 // By differences of a four hundredth of the range.
-Slopes slopes_of(const Effect& effect) {
+Slopes slopes_of(const Effect& effect, const Body& body, double lowest, double highest) {
   constexpr int kSteps = 400;
   const Nonlinearity nonlinearity = effect_kind(effect.kind).feedback(effect);
-  const SeenRange& range = effect.seen.front();
-  const double lowest = range.lower_edge();
-  const double width = range.upper_edge() - lowest;
+  const double stop = nonlinearity.stop ? *nonlinearity.stop - body.offset : 0.0;
+  const double width = highest - lowest;
   Slopes slopes;
   if (!(width > 0.0)) return slopes;
   LoopMemory memory;
   std::vector<double> up;
   const auto phi_of = [&](double z) {
-    return nonlinearity.phi((z - nonlinearity.stop.value_or(0.0)) / nonlinearity.threshold, memory);
+    return nonlinearity.phi((z - stop) / nonlinearity.threshold, memory);
   };
   double before = phi_of(lowest);
   const double largest = std::abs(before) + 1.0;
@@ -165,7 +164,8 @@ class TriedLoop {
 bool is_proved(const Body& body, const Effect& effect) {
   const LoopPath path = loop_path(effect, body.order());
   const Polynomial back = path.to_argument(body.denominator);
-  const Slopes slopes = slopes_of(effect);
+  const SeenRange& range = effect.seen.front();
+  const Slopes slopes = slopes_of(effect, body, range.lower_edge(), range.upper_edge());
   return !slopes.remembers && poles_inside(closed(body.denominator, slopes.least, back)) &&
          contracts(body.denominator, back, slopes);
 }
@@ -173,17 +173,20 @@ bool is_proved(const Body& body, const Effect& effect) {
 }  // namespace
 
 bool turns_round(const Model& fitted, const Signals& signals) {
+  constexpr double kNone =
+      0.1;  // of the stiffest place: what is 0 comes out a little below or above
   if (feedback_of(fitted).size() != 1) return false;
   Model model = fitted;
   note_seen(model, signals);
   const Effect& effect = *feedback_of(model).front();
   const Polynomial& a = model.body.denominator;
-  const Slopes slopes = slopes_of(effect);
+  const SeenRange& range = effect.seen.front();
+  const Slopes slopes = slopes_of(effect, model.body, range.low, range.high);
   const double linear = at(a, 0.0).real();
   const double path = at(loop_path(effect, model.body.order()).to_argument(a), 0.0).real();
   const auto [least, most] =
       std::minmax({linear - slopes.least * path, linear - slopes.most * path});
-  return least < 0.0 && most > 0.0;
+  return least < -kNone * most;
 }
 
 Stability stability_of(const Model& fitted, const Signals& signals) {

@@ -21,8 +21,8 @@ enum class Stability {
 /// @param signals  that it was fitted to
 Stability stability_of(const Model& fitted, const Signals& signals);
 
-/// Whether the stiffness at rest changes its sign within the range that the model's nonlinearity
-/// has on these signals, METHOD Eq. DG-95.
+/// Whether the stiffness at rest falls clearly below 0 within what the model's one nonlinearity
+/// reads of these signals, METHOD Eq. DG-95.
 bool turns_round(const Model& fitted, const Signals& signals);
 
 /// "proved", "tested" or "refused".
