@@ -106,10 +106,12 @@ def named(verdict, model):
 class Score:
     """One diagnosis and the errors on the test file, in the benchmark's unit."""
 
-    def __init__(self, bench, train, test, scratch, picture):
+    def __init__(self, bench, train, test, scratch, pictures):
         began = time.monotonic()
         ask = ["diagnose", train, "--input", bench.input, "--output", bench.output]
-        stillhand(*ask, "--save", scratch / "model.json", "--json", scratch / "verdict.json")
+        page = ["--report", pictures] if pictures else []
+        picture = ["--picture", pictures / "unseen.png"] if pictures else []
+        stillhand(*ask, "--save", scratch / "model.json", "--json", scratch / "verdict.json", *page)
         self.seconds = time.monotonic() - began
         self.effects = named(*(json.loads((scratch / name).read_text()) for name in ("verdict.json", "model.json")))
         columns = [columns_of(path, [bench.input, bench.output]) for path in (train, test)]
@@ -138,10 +140,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=pathlib.Path, default=FOLDER, help="the files (default: STILLHAND_DATA)")
     parser.add_argument("--only", choices=SETS, action="append", help="this set; may be given again")
-    parser.add_argument("--pictures", type=pathlib.Path, help="folder for a picture of each test file")
+    parser.add_argument("--pictures", type=pathlib.Path,
+                        help="folder for a folder a set: the page of its effects, with their curves and bands, and a "
+                             "picture of the test file; the time is then that of the page, too")
     options = parser.parse_args()
-    if options.pictures:
-        options.pictures.mkdir(parents=True, exist_ok=True)
     wrong, rows = [], 0
     print("| set, known of it | named (in brackets: not carried) | published: linear, best | linear, with effects "
           "| FIR, NARX | time [s] |\n| --- | --- | --- | --- | --- | --- |")
@@ -153,10 +155,10 @@ def main():
             print(f"skipped: {name}: no files in {options.folder}")
             continue
         rows += 1
-        picture = ["--picture", options.pictures / f"{name}.png"] if options.pictures else []
+        pictures = options.pictures / name if options.pictures else None
         with tempfile.TemporaryDirectory() as scratch:
             try:
-                score = Score(bench, train, test, pathlib.Path(scratch), picture)
+                score = Score(bench, train, test, pathlib.Path(scratch), pictures)
             except Failed as why:
                 print(f"| {name}: {bench.known} | {str(why).partition(' (')[0]} | {bench.published} {bench.unit} | | | |")
                 continue

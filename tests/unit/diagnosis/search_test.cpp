@@ -235,14 +235,11 @@ TEST(RecordingsOutTest, AnEffectIsRefutedThatHelpsOneAtMostAndHarmsAnother) {
   EXPECT_TRUE(refuted({0.3, std::numeric_limits<double>::quiet_NaN()}, kLeast));
 }
 
-// A(1) = 0.034: 2 e z reaches it beyond 1.4 N, within the ride.
+// A(1) = 0.034: the spring pushes outwards below 1 N and holds beyond.
 TEST(SearchTest, TrialsWhoseSpringTurnsRoundCountUnlessTheyAreForbidden) {
-  const Model planted =
-      made::model_of(made::two_pole_body(), {{"asymmetry",
-                                              "square of the output",
-                                              {},
-                                              {{"threshold", "N", 1.0, 1e-3, 1e3}},
-                                              {0.012, 0}}});
+  const Model planted = made::model_of(
+      made::two_pole_body(),
+      {{"dead_zone", "play of the output", {}, {{"threshold", "N", 1.0, 1e-3, 1e3}}, {0.07, 0.0}}});
   Measurement measurement =
       made::measurement_of({{"u", "V", made::ride(3000, 1)}, {"y", "N", made::white(3000, 2)}});
   const FreeRun run = free_run(planted, {measurement, {"u"}, "y"});

@@ -56,11 +56,11 @@ TEST(StabilityTest, ALoopThatSwingsByItselfIsRefused) {
   EXPECT_EQ(stability_of(sut, signals_of()), Stability::kRefused);
 }
 
-// A(1) = 0.034 and a slope of 2 e_0 z on +-2 N: it turns round beyond 0.8 N, or nowhere.
+// A(1) = 0.034 less a slope of e_0 below 1 N: it pushes outwards there, or nowhere.
 TEST(StabilityTest, ASpringTurnsRoundWhereItsStiffnessChangesItsSign) {
-  const Model turning = looped("asymmetry", "square of the output", 1.0, 0.02, 0.0);
+  const Model turning = looped("dead_zone", "play of the output", 1.0, 0.07, 0.0);
   EXPECT_TRUE(turns_round(turning, signals_of()));
-  const Model rising = looped("asymmetry", "square of the output", 1.0, 0.002, 0.0);
+  const Model rising = looped("dead_zone", "play of the output", 1.0, 0.02, 0.0);
   EXPECT_FALSE(turns_round(rising, signals_of()));
   EXPECT_FALSE(turns_round(made::model_of(made::two_pole_body()), signals_of()));
 }

@@ -68,8 +68,9 @@ TEST(ExperimentFileTest, WhatNoSessionCanRunIsNamed) {
   EXPECT_THAT(refusal("conditions: [B, low-pass]\ncomparisons: [B-low]"), HasSubstr("\"B-low\""));
   EXPECT_THAT(refusal("conditions: [A, C+]\ncomparisons: []"), HasSubstr("control_model"));
   EXPECT_THAT(refusal("comparisons: [A-D]"), HasSubstr("A-D"));
-  EXPECT_THAT(refusal("order: zigzag"),
-              StartsWith("experiment.yaml:1:8: order: got zigzag, want random, latin or williams"));
+  EXPECT_THAT(
+      refusal("order: zigzag"),
+      StartsWith("experiment.yaml:1:8: order: got \"zigzag\", want random, latin or williams"));
   EXPECT_THAT(refusal("operator: cat"), HasSubstr("simulated, mouse or gamepad"));
   EXPECT_THAT(refusal("blocks: 0"), HasSubstr("experiment.yaml:1:9"));
   EXPECT_THAT(refusal("blokcs: 1"), HasSubstr("blokcs"));
