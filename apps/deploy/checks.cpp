@@ -253,12 +253,11 @@ Finding check_latency_timer(const SerialPortState& port) {
   const auto timer_ms = number_at<int>(port.latency_timer);
   if (!timer_ms) return not_checked("latency", port.path + " has no latency timer");
   if (*timer_ms <= 1) return good("latency", fmt::format("{} ms", *timer_ms));
-  return wrong(
-      "latency",
-      fmt::format("the serial chip of {} collects bytes for {} ms, 1 is needed", port.path,
-                  *timer_ms),
-      "echo 'ACTION==\"add\", SUBSYSTEM==\"usb-serial\", ATTR{latency_timer}=\"1\"' | sudo tee "
-      "/etc/udev/rules.d/60-stillhand.rules; connect it again");
+  return wrong("latency",
+               fmt::format("the serial chip of {} collects bytes for {} ms, 1 is needed", port.path,
+                           *timer_ms),
+               "`stillhand deploy generate` writes HOST/devices.rules: copy it to "
+               "/etc/udev/rules.d/60-stillhand-devices.rules and connect the chip again");
 }
 
 Finding check_keys(const std::vector<std::string>& refused,

@@ -239,7 +239,6 @@ void add_diagnose_command(CLI::App& cli, int& status) {
                    "folder of the settings that a session ran with, to split what its motor left "
                    "into causes")
       ->check(settings::check_name);
-  measurement::add_heaviest_option(*verb, arguments->options.heaviest_kg);
   verb->add_option("--save", arguments->save,
                    "file for the diagnosed model, for `stillhand predict`")
       ->check(settings::check_name);

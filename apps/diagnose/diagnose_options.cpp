@@ -60,6 +60,7 @@ void add_diagnose_options(CLI::App& verb, diagnosis::DiagnoseOptions& options) {
                   "smallest RMS force of an effect that counts [N]; the default moves the cursor "
                   "by 0.8 mm. If the output has another unit, every effect counts")
       ->check(settings::number_between(0.0, kMostForce_n));
+  measurement::add_heaviest_option(verb, options.heaviest_kg);
 }
 
 }  // namespace stillhand::diagnose

@@ -196,7 +196,7 @@ void add_output_options(CLI::App& lab, LabOptions& options) {
                  "OUT/earlier-1")
       ->required();
   lab.add_flag("--headless", options.headless, "open no window");
-  lab.add_flag("--video", options.video, "write the tracking screen to DIR/screen.avi");
+  lab.add_flag("--video", options.video, "write the tracking screen to OUT/screen.avi");
   recording::add_keep_options(lab, options.keep);
 }
 

@@ -29,7 +29,8 @@ constexpr const char* kResults[]{"session.mcap",
                                  "undeclared_effect.sha256",
                                  "control_model.json",
                                  "verdict.json"};
-constexpr const char* kFigures[]{"session", "tracking", "force", "adaptation", "motion", "left"};
+constexpr const char* kFigures[]{"session", "tracking", "force", "adaptation",
+                                 "motion",  "left",     "repair"};
 
 std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;

@@ -128,12 +128,15 @@ int run(const Arguments& arguments) {
                         next_run::longer(plan, longer_s(arguments), contest, working, bounds)};
   write_all(arguments, planned, folder);
   std::fputs(plan_table(planned).c_str(), stdout);
+  const std::string plan_file = report::quoted_for_shell((arguments.out / "plan.json").string());
+  std::string recordings;
+  for (const std::string& each : arguments.recordings) {
+    recordings += report::quoted_for_shell(each) + " ";
+  }
   report::say_next(
-      fmt::format("stillhand lab --plan {} --out NEW, and then stillhand diagnose {} "
-                  "NEW/session.mcap --plan {}",
-                  report::quoted_for_shell((arguments.out / "plan.json").string()),
-                  report::quoted_for_shell(arguments.recordings.front()),
-                  report::quoted_for_shell((arguments.out / "plan.json").string())));
+      fmt::format("stillhand lab --plan {0} --out NEW, and then stillhand diagnose {1}"
+                  "NEW/session.mcap --plan {0}",
+                  plan_file, recordings));
   return 0;
 }
 

@@ -68,9 +68,9 @@ void add_record_command(CLI::App& cli, int& status) {
       "Records a running bus into an MCAP file. The verb is outside of every session: no\n"
       "session waits for it or ends with it. It records every topic of any DDS program, unless\n"
       "patterns select fewer; in a pattern * stands for any run of characters and ? for one\n"
-      "character. A type that neither the bus nor --idl describes is recorded as bytes. It ends "
-      "with Ctrl-C or after --duration, and prints for each topic how many\n"
-      "messages it received, lost and wrote. Exit status 1 when a message was lost.\n"
+      "character. A type that neither the bus nor --idl describes is recorded as bytes. It ends\n"
+      "with Ctrl-C or after --duration, and prints for each topic how many messages it received,\n"
+      "lost and wrote. Exit status 1 when a message was lost.\n"
       "Example: stillhand record --out run.mcap --topics 'stillhand/*' --block '*status'");
   verb->add_option("--out", arguments->out, "MCAP file to write; it must not exist yet");
   settings::repeatable(verb->add_option("--topics", options.topics.allow,

@@ -52,7 +52,8 @@ void add_ros2_bridge_command(CLI::App& cli, int& status) {
                  "publish what `stillhand replay` plays, in the place of a session");
   verb->add_option("--domain", options->domain, "DDS domain of the session")
       ->check(settings::number_between(0.0, runtime::kMaxDomain));
-  verb->add_option("--ros-domain", options->ros_domain, "domain of ROS 2")
+  verb->add_option("--ros-domain", options->ros_domain,
+                   "domain of ROS 2; without it, that of ROS_DOMAIN_ID")
       ->envname("ROS_DOMAIN_ID")
       ->check(settings::number_between(0.0, runtime::kMaxDomain));
   settings::repeatable(verb->add_option("--ros-address", options->addresses,

@@ -17,9 +17,10 @@ void add_stop_command(CLI::App& cli, int& status) {
   CLI::App* stop = cli.add_subcommand(
       "stop",
       "Emergency stop without a dashboard: the motor force goes to zero, the platform brakes, the\n"
-      "session ends. It asks every session that a lab of this machine runs, and prints how long "
-      "it\n"
-      "took until each rig reported zero force. Exit status 1 if one did not report it.\n"
+      "session ends. It asks every session that a lab of this machine runs, and prints of each "
+      "rig\n"
+      "that its force is zero, and how long it took to reach it. Exit status 1 if one did not\n"
+      "report it.\n"
       "Example: stillhand stop");
   stop->add_option("--domain", options->domain, "DDS domain of one session [all of this machine]")
       ->check(CLI::Range(0, 232));

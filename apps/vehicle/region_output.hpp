@@ -17,7 +17,7 @@ report::Figure region_figure(const RegionOptions& options, const Region& region)
 /// One row for each drive, and for each limit.
 std::string runs_csv(const Region& region);
 std::string limits_csv(const Region& region);
-/// README, "summary.json".
+/// `summary.json`.
 std::string region_json(const RegionOptions& options, const Region& region);
 /// Agreement and stops, for a terminal.
 std::string region_text(const RegionOptions& options, const Region& region);

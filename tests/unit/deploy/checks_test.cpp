@@ -150,7 +150,7 @@ TEST(CheckTest, ASerialChipHandsBytesOnAtOnce) {
   SerialPortState port{.path = "/dev/ttyUSB0", .exists = true};
   EXPECT_THAT(check_latency_timer(port), not_checked());
   port.latency_timer = "16\n";
-  EXPECT_THAT(check_latency_timer(port), wrong("collects bytes for 16 ms", "latency_timer"));
+  EXPECT_THAT(check_latency_timer(port), wrong("collects bytes for 16 ms", "devices.rules"));
   port.latency_timer = "1\n";
   EXPECT_THAT(check_latency_timer(port), good());
 }
