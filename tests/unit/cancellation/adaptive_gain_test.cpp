@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -66,6 +68,35 @@ std::function<double(double)> steady(double gain) {
 TEST(AdaptiveGainTest, WithoutAHandNothingIsFollowed) {
   AdaptiveGain sut;
   for (int n = 0; n < 1000; ++n) EXPECT_EQ(sut.step(3.0, 0.1 * n, true), 3.0);
+}
+
+// Eq. CC-11 by a matrix, on a force that dies away: f and f' are correlated then.
+TEST(AdaptiveGainTest, EachStepIsNewtonsUntilItIsBounded) {
+  constexpr double kDt = 1e-3;
+  AdaptiveGain sut(kHand);
+  ExplainedMotion motion(kHand);
+  Eigen::Vector2d weights(1.0, 0.0);
+  Eigen::Matrix2d power = Eigen::Matrix2d::Zero();
+  double most_correlated = 0.0;
+  for (int n = 0; n < 4000; ++n) {
+    const double t = n * kDt;
+    const double force_n = 30.0 * std::exp(-t) * std::sin(2.0 * std::numbers::pi * 0.8 * t);
+    const double theta_rad = 0.002 * std::sin(2.0 * std::numbers::pi * 0.8 * t + 0.4);
+    const auto [r_m, e_m] = motion.step(force_n, theta_rad);
+    const Eigen::Vector2d r(r_m[0], r_m[1]);
+    power += kDt / 10.0 * (r * r.transpose() - power);
+    const Eigen::Matrix2d least = 1e-8 * Eigen::Matrix2d::Identity();
+    const Eigen::Vector2d towards = (power + least).inverse() * r * e_m;
+    weights += (kDt / 15.0 * towards).cwiseMax(-0.2 * kDt).cwiseMin(0.2 * kDt);
+    weights[1] = std::clamp(weights[1], -0.7 * weights[0], 0.7 * weights[0]);
+    most_correlated =
+        std::max(most_correlated, power(0, 1) * power(0, 1) / ((power + least).diagonal().prod()));
+    sut.step(force_n, theta_rad, true);
+  }
+  EXPECT_GT(most_correlated, 0.3);
+  EXPECT_GT((weights - Eigen::Vector2d(1.0, 0.0)).norm(), 0.01);
+  EXPECT_NEAR(sut.weights()[0], weights[0], 1e-9);
+  EXPECT_NEAR(sut.weights()[1], weights[1], 1e-9);
 }
 
 TEST(AdaptiveGainTest, FindsGainAndPhase) {
