@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -180,6 +181,23 @@ TEST(EffectsOfPathsTest, AnOutputThatIsASize) {
   expect_proposed(sut);
   const Studied of(sut.measurement, 2);
   EXPECT_GT(of.baseline.rmse, 0.9 * of.signals.output().deviation);
+}
+
+// Of an output that is 0.4 to 0.6 N the lower of two limits would be none.
+TEST(EffectsOfPathsTest, AnOutputOfOneSignHasNoTwoLimits) {
+  const auto proposes_two = [](double level, double swing) {
+    std::vector<double> y = answer(kU);
+    const double largest =
+        std::abs(*std::ranges::max_element(y, {}, [](double value) { return std::abs(value); }));
+    for (double& value : y) value = level + swing * value / largest;
+    const Planted sut = planted("output_saturation", "hard", y);
+    const Studied of(sut.measurement, 2);
+    return std::ranges::any_of(
+        effect_kind("output_saturation").proposed(of.screening),
+        [](const Proposal& each) { return each.effect.form == "hard, two limits"; });
+  };
+  EXPECT_FALSE(proposes_two(0.5, 0.1));
+  EXPECT_TRUE(proposes_two(0.0, 0.1));
 }
 
 TEST(EffectsOfPathsTest, AnOutputThatHardens) {

@@ -173,8 +173,7 @@ bool is_proved(const Body& body, const Effect& effect) {
 }  // namespace
 
 bool turns_round(const Model& fitted, const Signals& signals) {
-  constexpr double kNone =
-      0.1;  // of the stiffest place: what is 0 comes out a little below or above
+  constexpr double kNone = 0.1;  // of the largest: a stiffness of 0 comes out a little off
   if (feedback_of(fitted).size() != 1) return false;
   Model model = fitted;
   note_seen(model, signals);
