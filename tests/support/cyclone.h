@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every program of Cyclone DDS here needs: to end at a signal, and at an entity that is refused.
+// What every program of Cyclone DDS here needs: to end at a signal, and at an entity that is
+// refused.
 #pragma once
 
 #include <dds/dds.h>

@@ -172,9 +172,9 @@ TEST(DrawTest, RenderWritesTheThreeFilesOfEachFigureAndNothingElse) {
 
 TEST(DrawTest, AFolderThatIsNotThereIsNamedInTheError) {
   const Figure figure = one_line({1, 2});
-  EXPECT_THAT(
-      support::refusal<std::runtime_error>([&] { render({&figure, 1}, "/nonexistent/folder"); }),
-      HasSubstr("/nonexistent/folder/one_line.svg"));
+  const auto draw_there = [&figure] { render({&figure, 1}, "/nonexistent/folder"); };
+  EXPECT_THAT(support::refusal<std::runtime_error>(draw_there),
+              HasSubstr("/nonexistent/folder/one_line.svg"));
 }
 
 TEST(DrawTest, NoFiguresNeedNoGnuplot) { EXPECT_TRUE(draw({}).empty()); }

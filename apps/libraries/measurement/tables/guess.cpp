@@ -133,8 +133,9 @@ Mapping guess_mapping(const TableHead& head) {
 
 std::string command_words(const Mapping& mapping) {
   std::string words = "--map";
-  for (const ColumnWish& wish : mapping.columns)
+  for (const ColumnWish& wish : mapping.columns) {
     words += " " + report::in_shell_quotes(wish_text(wish));
+  }
   if (mapping.rate_hz) words += fmt::format(" --sample-rate {}", *mapping.rate_hz);
   return words;
 }

@@ -37,7 +37,7 @@ std::string number(double value, int decimals);
 /// 1e-4 .. 1e6.
 std::string short_number(double value);
 
-/// "12.3 %" of the share 0.123; an en dash for a number that is not finite.
+/// "12.3 %" of the share 0.123; an en dash in place of a number that is not finite.
 std::string percent(double share, int decimals);
 
 /// A probability for people; "< 10⁻³⁰⁰" where a double cannot hold it.
