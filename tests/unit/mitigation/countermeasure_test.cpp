@@ -4,13 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <string>
+#include <vector>
 
+#include "apps/libraries/session/core/conditions.hpp"
 #include "services/core/admittance/arm_fit.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/rms_share.hpp"
@@ -28,6 +31,22 @@ signal::DifferenceModel model() {
   return {1000.0, {gain, 0.0, 0.0}, {1.0, -c, r * r}};
 }
 
+// Of each kind that is made of its values, the first part in the table of conditions.
+std::vector<Part> made_parts() {
+  std::vector<Part> out;
+  for (const PartRow& kind : kPartRows) {
+    if (kind.make == nullptr) continue;
+    for (const session::ConditionRow& condition : session::condition_table()) {
+      const auto part = std::ranges::find(condition.parts, kind.kind, &Part::kind);
+      if (part == condition.parts.end()) continue;
+      out.push_back(*part);
+      break;
+    }
+  }
+  return out;
+}
+
+// All that stand next to each other: a trial has one filter on the command.
 Recipe everything() {
   Recipe out;
   out.force = true;
@@ -36,10 +55,13 @@ Recipe everything() {
       ScheduleConfig{.relaxed = admittance::mean_arm(), .holding = admittance::mean_arm()};
   out.signal = SignalConfig{
       .feedthrough_to_position = model(), .moved_by_motor = admittance::mean_arm(), .stick = {}};
-  out.parts = {{PartKind::kImpedance, {300.0, 20.0, 0.2}},
-               {PartKind::kLmsForce, {0.05, 1.394, 11.18, 1136.0}},
-               {PartKind::kLmsSignal, {0.05}},
-               {PartKind::kLowPass, {1.0, 0.7}}};
+  bool filtered = false;
+  for (const Part& part : made_parts()) {
+    const PartRow& row = *row_of(part.kind);
+    if (row.in_place_of || (row.filters_command && filtered)) continue;
+    filtered = filtered || row.filters_command;
+    out.parts.push_back(part);
+  }
   return out;
 }
 
@@ -270,8 +292,9 @@ TEST(CountermeasureTest, AFilterOnTheCommandBeginsAndEndsWithoutAJump) {
     return 0.1 + 0.1 * std::sin(kTurn * kTheta_hz * 1e-3 * static_cast<double>(n));
   };
   constexpr double kMost_rad_tick = 0.1 * kTurn * kTheta_hz * 1e-3;
-  for (const PartKind kind : {PartKind::kLowPass, PartKind::kNotch}) {
-    const Recipe recipe = only({kind, {1.0, 0.7}});
+  for (const Part& part : made_parts()) {
+    if (!row_of(part.kind)->filters_command) continue;
+    const Recipe recipe = only(part);
     // The trial has begun, begins later, or begins again behind samples that are unsound.
     for (const Tick begins : {1, 700}) {
       Countermeasure sut({}, recipe);
