@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/libraries/session/jackknife.hpp"
 
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <vector>
+
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::session {
 
@@ -21,8 +22,7 @@ double jackknife_variance(const std::function<double(std::size_t)>& without) {
 }
 
 double jackknife_reach(double variance) {
-  const boost::math::students_t spread(static_cast<double>(kJackknifeBlocks - 1));
-  return quantile(complement(spread, 0.025)) * std::sqrt(variance);
+  return statistics::t_upper_quantile(0.025, kJackknifeBlocks - 1) * std::sqrt(variance);
 }
 
 }  // namespace stillhand::session

@@ -2,13 +2,13 @@
 #include "apps/study/explain/inference.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 #include <span>
 
 #include "services/core/contract/expects.hpp"
 #include "services/core/signal/random.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -207,9 +207,9 @@ class Explaining {
     const Fit fit = fit_at(middle, 0, 1);
     out.shift.assign(fit.shift.begin(), fit.shift.end());
     out.z = (fit.after - all_.paper.values).cwiseQuotient(all_.paper.standard_error);
-    const boost::math::chi_squared chi(static_cast<double>(kTableFigures) -
-                                       static_cast<double>(out.parameters.size()));
-    out.fit_p = cdf(complement(chi, fit.chi_square));
+    out.fit_p = statistics::chi_squared_above(
+        fit.chi_square,
+        static_cast<double>(kTableFigures) - static_cast<double>(out.parameters.size()));
     return out;
   }
 

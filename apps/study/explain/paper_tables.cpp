@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/explain/paper_tables.hpp"
 
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "apps/libraries/session/core/trial_numbers.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -44,8 +44,7 @@ const std::array<std::string, kTableFigures>& table_figure_names() {
 }
 
 double deviation_from_p(double mean_difference, double p, int subjects) {
-  const boost::math::students_t distribution(subjects - 1.0);
-  const double t = quantile(complement(distribution, p / 2.0));
+  const double t = statistics::t_upper_quantile(p / 2.0, subjects - 1.0);
   return std::abs(mean_difference) * std::sqrt(static_cast<double>(subjects)) / t;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "apps/libraries/report/text/text.hpp"
 #include "apps/study/explain/explanation_output.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -38,9 +38,9 @@ std::string values_of(const SpreadFit& fit) {
 
 // The deviation of n normal values over that of all people: what n people leave open.
 std::array<double, 2> chi_square_interval(double deviation, int people) {
-  const boost::math::chi_squared chi(people - 1.0);
   const auto end = [&](double p) {
-    return deviation * std::sqrt((people - 1.0) / quantile(chi, p));
+    return deviation *
+           std::sqrt((people - 1.0) / statistics::chi_squared_quantile(p, people - 1.0));
   };
   return {end(0.975), end(0.025)};
 }

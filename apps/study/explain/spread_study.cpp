@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 
 #include "apps/study/explain/explain.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -93,9 +93,12 @@ class SpreadStudy {
 
   // Of the ratio of two deviations, ours of `judging_subjects` and the paper's of twelve.
   [[nodiscard]] std::array<double, 2> interval(double ratio) const {
-    const boost::math::fisher_f f(static_cast<double>(options_.judging_subjects()) - 1.0,
-                                  kPaperSubjects - 1.0);
-    return {ratio / std::sqrt(quantile(f, 0.975)), ratio / std::sqrt(quantile(f, 0.025))};
+    const auto end = [&](double p) {
+      return ratio /
+             std::sqrt(statistics::f_quantile(
+                 p, static_cast<double>(options_.judging_subjects()) - 1.0, kPaperSubjects - 1.0));
+    };
+    return {end(0.975), end(0.025)};
   }
 
   const ExplainOptions& options_;

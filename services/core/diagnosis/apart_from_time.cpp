@@ -3,13 +3,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "services/core/diagnosis/fitting/held_out.hpp"
 #include "services/core/diagnosis/selection.hpp"
 #include "services/core/signal/decompositions.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -53,8 +53,7 @@ double borne_out(const Model& model, const Signals& signals, const Signals& smoo
   if (!by_time.finite) return 1.0;
   const Comparison comparison = compared(by_time, by_channel);
   if (!(comparison.t > 0.0)) return 0.0;
-  const boost::math::students_t chance(static_cast<double>(blocks.count) - 1.0);
-  return 1.0 - 2.0 * boost::math::cdf(boost::math::complement(chance, comparison.t));
+  return 1.0 - 2.0 * statistics::t_above(comparison.t, static_cast<double>(blocks.count) - 1.0);
 }
 
 }  // namespace

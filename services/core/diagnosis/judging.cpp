@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "services/core/diagnosis/effect_sizes.hpp"
 #include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "services/core/diagnosis/no_model.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -22,7 +22,7 @@ double half_width(const std::vector<double>& of_blocks) {
   double square = 0.0;
   for (const double each : of_blocks) square += (each - mean) * (each - mean);
   const double standard_error = std::sqrt(square / (count - 1.0) / count);
-  return boost::math::quantile(boost::math::students_t(count - 1.0), 0.975) * standard_error;
+  return statistics::t_quantile(0.975, count - 1.0) * standard_error;
 }
 
 HeldOutError held_out_error(const HeldOut& held_out, double variance) {

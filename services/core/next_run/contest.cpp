@@ -2,7 +2,6 @@
 #include "services/core/next_run/contest.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +12,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/signal/decompositions.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::next_run {
 namespace {
@@ -100,8 +100,6 @@ double variance_of_sum(const std::vector<double>& sums) {
   for (const double sum : sums) square += (sum - mean) * (sum - mean);
   return count < 2.0 ? 0.0 : square * count / (count - 1.0);
 }
-
-double phi(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
 // Of a sum over one recording.
 double error_of_sum(const VectorXd& values, const Signals& signals) {
@@ -396,7 +394,8 @@ MatrixXd Contest::margin(const Expected& expected) const {
 }
 
 MatrixXd Contest::chance(const Expected& expected) const {
-  MatrixXd chances = margin(expected).unaryExpr([](double z) { return phi(z); });
+  MatrixXd chances =
+      margin(expected).unaryExpr([](double z) { return statistics::normal_below(z); });
   chances.diagonal().setZero();
   return chances;
 }

@@ -2,11 +2,11 @@
 #include "services/core/statistics/descriptive.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/statistics/distributions.hpp"
 #include "services/core/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
@@ -64,8 +64,7 @@ MeanInterval mean_interval(const std::vector<double>& values, double confidence)
   require_sample(values, 2, "mean_interval.values");
   require_inside_unit_interval(confidence, "mean_interval.confidence");
   const double n = static_cast<double>(values.size());
-  const boost::math::students_t distribution(n - 1.0);
-  const double t = quantile(boost::math::complement(distribution, (1.0 - confidence) / 2.0));
+  const double t = t_upper_quantile((1.0 - confidence) / 2.0, n - 1.0);
   const double half_width = t * standard_deviation(values) / std::sqrt(n);
   const double centre = mean(values);
   return {centre, centre - half_width, centre + half_width, confidence};

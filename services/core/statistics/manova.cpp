@@ -3,13 +3,13 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/signal/decompositions.hpp"
+#include "services/core/statistics/distributions.hpp"
 #include "services/core/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
@@ -122,8 +122,7 @@ void check_residuals(const MatrixXd& observations, const MatrixXd& error, double
 }
 
 FTest f_test(double f, double numerator_df, double denominator_df) {
-  const boost::math::fisher_f distribution(numerator_df, denominator_df);
-  return {f, numerator_df, denominator_df, cdf(complement(distribution, f))};
+  return {f, numerator_df, denominator_df, f_above(f, numerator_df, denominator_df)};
 }
 
 // Eq. ST-8 to ST-10 from the eigenvalues of E^-1 H; p metrics, q and v degrees of freedom.

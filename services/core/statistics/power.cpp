@@ -2,15 +2,13 @@
 #include "services/core/statistics/power.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/non_central_t.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/statistics/distributions.hpp"
 #include "services/core/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
@@ -26,9 +24,8 @@ constexpr double kLargestEffect = 100.0;
 bool certain(double noncentrality, double critical, double degrees_of_freedom) {
   const double quotient = noncentrality / (2.0 * critical);
   if (quotient <= 1.0) return false;
-  const boost::math::chi_squared v(degrees_of_freedom);
-  return cdf(boost::math::normal(), -noncentrality / 2.0) +
-             cdf(complement(v, degrees_of_freedom * quotient * quotient)) <
+  return normal_below(-noncentrality / 2.0) +
+             chi_squared_above(degrees_of_freedom * quotient * quotient, degrees_of_freedom) <
          std::numeric_limits<double>::epsilon() / 2.0;
 }
 
@@ -43,7 +40,7 @@ double paired_t_power(double effect_dz, std::size_t subjects, double alpha) {
     throw ConfigError("power.subjects", std::to_string(subjects), "2 to a million");
   }
   const double n = static_cast<double>(subjects);
-  const double critical = quantile(complement(boost::math::students_t(n - 1.0), alpha / 2.0));
+  const double critical = t_upper_quantile(alpha / 2.0, n - 1.0);
   const double noncentrality = std::abs(effect_dz) * std::sqrt(n);
   if (noncentrality == 0.0) return alpha;
   if (certain(noncentrality, critical, n - 1.0)) return 1.0;

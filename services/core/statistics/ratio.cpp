@@ -2,11 +2,11 @@
 #include "services/core/statistics/ratio.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/statistics/descriptive.hpp"
+#include "services/core/statistics/distributions.hpp"
 #include "services/core/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
@@ -31,8 +31,7 @@ std::optional<RatioInterval> ratio_interval(const std::vector<double>& x,
     xy += (x[i] - mean_x) * (y[i] - mean_y);
     yy += (y[i] - mean_y) * (y[i] - mean_y);
   }
-  const boost::math::students_t distribution(n - 1.0);
-  const double t = quantile(boost::math::complement(distribution, (1.0 - confidence) / 2.0));
+  const double t = t_upper_quantile((1.0 - confidence) / 2.0, n - 1.0);
   const double factor = t * t / (n * (n - 1.0));
   const double a = mean_y * mean_y - factor * yy;
   const double b = mean_x * mean_y - factor * xy;

@@ -2,9 +2,9 @@
 #include "services/core/statistics/signed_rank.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "services/core/statistics/distributions.hpp"
 #include "services/core/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
@@ -54,7 +54,7 @@ double signed_rank_p(const std::vector<double>& differences) {
   const double deviation =
       std::sqrt(count * (count + 1.0) * (2.0 * count + 1.0) / 24.0 - tie_term / 48.0);
   const double z = (rank_sum - mean - 0.5) / deviation;
-  return boost::math::cdf(boost::math::complement(boost::math::normal(), z));
+  return normal_above(z);
 }
 
 double signed_rank_two_sided_p(const std::vector<double>& differences) {

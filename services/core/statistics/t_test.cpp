@@ -2,7 +2,6 @@
 #include "services/core/statistics/t_test.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/statistics/descriptive.hpp"
+#include "services/core/statistics/distributions.hpp"
 #include "services/core/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
@@ -52,8 +52,7 @@ TTest test_of(const std::vector<double>& differences, double magnitude, double c
   out.degrees_of_freedom = n - 1.0;
   out.cohen_dz = out.mean_difference / out.standard_deviation;
   out.t = out.cohen_dz * std::sqrt(n);
-  const boost::math::students_t distribution(out.degrees_of_freedom);
-  out.p = 2.0 * cdf(complement(distribution, std::abs(out.t)));
+  out.p = 2.0 * t_above(std::abs(out.t), out.degrees_of_freedom);
   if (out.n > 2) out.hedges_gz = hedges_correction(out.degrees_of_freedom) * out.cohen_dz;
   return out;
 }
@@ -97,10 +96,9 @@ WelchTest welch_t_test(const std::vector<double>& first, const std::vector<doubl
   out.degrees_of_freedom = (a + b) * (a + b) /
                            (a * a / (static_cast<double>(first.size()) - 1.0) +
                             b * b / (static_cast<double>(second.size()) - 1.0));
-  const boost::math::students_t distribution(out.degrees_of_freedom);
-  out.p = 2.0 * cdf(complement(distribution, std::abs(out.t)));
+  out.p = 2.0 * t_above(std::abs(out.t), out.degrees_of_freedom);
   const double reach =
-      quantile(complement(distribution, (1.0 - confidence) / 2.0)) * std::sqrt(a + b);
+      t_upper_quantile((1.0 - confidence) / 2.0, out.degrees_of_freedom) * std::sqrt(a + b);
   out.ci_low = out.mean_difference - reach;
   out.ci_high = out.mean_difference + reach;
   return out;

@@ -2,11 +2,11 @@
 #include "services/core/diagnosis/detection/detection_lines.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "services/core/diagnosis/detection/fourier_lines.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -158,8 +158,7 @@ DetectionLines detection_lines(const RepeatedResidual& repeated,
     if (group.empty()) return;
     group.share = excess / total;
     if (excess < least) return;
-    const boost::math::chi_squared distribution(2.0 * static_cast<double>(group.output.size()));
-    group.p = boost::math::cdf(boost::math::complement(distribution, fisher));
+    group.p = statistics::chi_squared_above(fisher, 2.0 * static_cast<double>(group.output.size()));
   };
   gather(result.excited, [](std::size_t, bool excited) { return excited; });
   if (result.odd_excitation) {

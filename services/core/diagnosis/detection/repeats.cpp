@@ -2,11 +2,10 @@
 #include "services/core/diagnosis/detection/repeats.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 
 #include "services/core/diagnosis/detection/fourier_lines.hpp"
+#include "services/core/statistics/distributions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -77,8 +76,7 @@ bool first_differs(const Periods& periods, double freedom) {
   const double between = (others.colwise() - mean).squaredNorm() / (more - 2.0);
   const double a_period = freedom / (more - 1.0);
   if (!(between > 0.0) || a_period < 1.0) return false;
-  const boost::math::fisher_f distribution(a_period, a_period * (more - 2.0));
-  return boost::math::cdf(boost::math::complement(distribution, own / between)) < kFirstDiffers;
+  return statistics::f_above(own / between, a_period, a_period * (more - 2.0)) < kFirstDiffers;
 }
 
 }  // namespace
@@ -114,9 +112,11 @@ std::optional<RepeatedResidual> repeated_residual(const Periodicity& periodicity
   repeats.periods = result.used.periods;
   repeats.degrees_of_freedom = freedom;
   repeats.rms = std::sqrt(periods.squares / std::max(periods.compared, 1.0));
-  const boost::math::chi_squared chi_squared(freedom);
-  repeats.low = repeats.rms * std::sqrt(freedom / boost::math::quantile(chi_squared, 0.975));
-  repeats.high = repeats.rms * std::sqrt(freedom / boost::math::quantile(chi_squared, 0.025));
+  const auto end = [&](double p) {
+    return repeats.rms * std::sqrt(freedom / statistics::chi_squared_quantile(p, freedom));
+  };
+  repeats.low = end(0.975);
+  repeats.high = end(0.025);
   return result;
 }
 

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Distributions of Boost.Math behind plain functions: each is instantiated once, where each file
+/// that names one takes 5 s more to compile.  An upper tail is computed as such, so that a small
+/// one keeps its digits.  Pure. Degrees of freedom are above 0 and probabilities between 0 and 1;
+/// otherwise they throw std::domain_error.
+namespace stillhand::statistics {
+
+/// P(Z <= z) and P(Z > z) of the standard normal distribution.
+double normal_below(double z);
+double normal_above(double z);
+
+/// P(T > t) of Student's t.
+double t_above(double t, double degrees_of_freedom);
+/// The t with P(T <= t) = p.
+double t_quantile(double p, double degrees_of_freedom);
+/// The t with P(T > t) = p.
+double t_upper_quantile(double p, double degrees_of_freedom);
+
+/// P(X > x) of chi-squared.
+double chi_squared_above(double x, double degrees_of_freedom);
+/// The x with P(X <= x) = p.
+double chi_squared_quantile(double p, double degrees_of_freedom);
+
+/// P(F > f) of Fisher's F.
+double f_above(double f, double numerator_df, double denominator_df);
+/// The f with P(F <= f) = p.
+double f_quantile(double p, double numerator_df, double denominator_df);
+
+}  // namespace stillhand::statistics
