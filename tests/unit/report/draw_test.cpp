@@ -121,20 +121,6 @@ TEST(DrawTest, ALongLineIsThinnedAndItsPeakStays) {
   EXPECT_LT(count(sut, '\n'), 4U * static_cast<unsigned>(figure.width_px));
 }
 
-// Heights from "translate(x,y)" of the group that holds the text.
-TEST(DrawTest, NotesOfACornerReadFromTopToBottom) {
-  for (const Corner corner : {Corner::kTopLeft, Corner::kBottomRight}) {
-    Figure figure = one_line({1, 2});
-    figure.panels[0].notes = {{"first note", corner}, {"second note", corner}};
-    const std::string sut = drawn(figure).svg;
-    const auto height_px = [&](const std::string& text) {
-      const std::size_t at = sut.rfind("translate(", sut.find("<text>" + text));
-      return std::stod(sut.substr(sut.find(',', at) + 1));
-    };
-    EXPECT_NEAR(height_px("second note") - height_px("first note"), 17.0, 0.1);
-  }
-}
-
 TEST(DrawTest, AHostileTextIsDrawnAndNothingElse) {
   const test::TemporaryFolder folder;
   const std::string trap = (folder.path() / "trap").string();
