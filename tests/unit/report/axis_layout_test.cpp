@@ -33,56 +33,73 @@ std::vector<std::string> labels(const AxisLayout& layout) {
   return result;
 }
 
-TEST(AxisLayoutTest, ALineAgainstTimeFillsItsAxisExactly) {
-  const AxisLayout sut = horizontal({}, 40.0, 60.0);
-  EXPECT_EQ(sut.low, 40.0);
-  EXPECT_EQ(sut.high, 60.0);
-  EXPECT_THAT(labels(sut),
-              ElementsAre("40", "42", "44", "46", "48", "50", "52", "54", "56", "58", "60"));
+TEST(AxisLayoutTest, LimitsAndLabelsSuitTheScaleAndWhatIsGiven) {
+  struct Case {
+    AxisLayout sut;
+    double low, high;
+    std::vector<std::string> labels;
+  };
+  const Axis frequency{.scale = Scale::kLogarithmic};
+  for (const Case& each :
+       std::vector<Case>{// A line against time fills its axis exactly.
+                         {horizontal({}, 40.0, 60.0),
+                          40.0,
+                          60.0,
+                          {"40", "42", "44", "46", "48", "50", "52", "54", "56", "58", "60"}},
+                         {horizontal(frequency, 0.1, 10.0),
+                          0.1,
+                          10.0,
+                          {"0.1", "0.2", "0.5", "1", "2", "5", "10"}},
+                         // Where there is no room, powers alone, and of many decades every second.
+                         {horizontal(frequency, 0.1, 10.0, 150.0), 0.1, 10.0, {"0.1", "1", "10"}},
+                         {horizontal(frequency, 1e-4, 1e6, 300.0),
+                          1e-4,
+                          1e6,
+                          {"10⁻⁴", "10⁻²", "10⁰", "10²", "10⁴", "10⁶"}},
+                         {vertical({.scale = Scale::kDegrees}, -200.0, -100.0),
+                          -225.0,
+                          -90.0,
+                          {"−225", "−180", "−135", "−90"}},
+                         {vertical({.scale = Scale::kDegrees}, -700.0, 0.0),
+                          -720.0,
+                          180.0,
+                          {"−720", "−540", "−360", "−180", "0", "180"}},
+                         {vertical({.low = 0.0, .high = 80.0}, 17.0, 63.0),
+                          0.0,
+                          80.0,
+                          {"0", "20", "40", "60", "80"}},
+                         {vertical({.low = 0.0, .high = 1.0, .tick_step = 0.25}, 0.0, 1.0),
+                          0.0,
+                          1.0,
+                          {"0", "0.25", "0.50", "0.75", "1.00"}}}) {
+    EXPECT_EQ(each.sut.low, each.low) << each.labels[0];
+    EXPECT_EQ(each.sut.high, each.high) << each.labels[0];
+    EXPECT_EQ(labels(each.sut), each.labels);
+  }
+  EXPECT_THAT(labels(vertical(frequency, 1.1e-6, 0.9)),
+              ElementsAre("10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰"));
+  const AxisLayout ticks = horizontal(frequency, 0.01, 10.0);
+  for (const AxisTick& tick : ticks.major) EXPECT_EQ(tick.at, std::stod(tick.label));
+  EXPECT_EQ(ticks.minor.size(), 3 * 6U) << "3, 4, 6, 7, 8, 9 of each decade";
 }
 
-TEST(AxisLayoutTest, FrequenciesAreMarkedAtOneTwoFive) {
-  const AxisLayout sut = horizontal({.scale = Scale::kLogarithmic}, 0.1, 10.0);
-  EXPECT_THAT(labels(sut), ElementsAre("0.1", "0.2", "0.5", "1", "2", "5", "10"));
-  EXPECT_EQ(sut.minor.size(), 2 * 6U);  // 3, 4, 6, 7, 8, 9 of each decade
-}
-
-TEST(AxisLayoutTest, AFrequencyTickSitsAtTheNumberThatItsLabelSays) {
-  const AxisLayout sut = horizontal({.scale = Scale::kLogarithmic}, 0.01, 10.0);
-  for (const AxisTick& tick : sut.major) EXPECT_EQ(tick.at, std::stod(tick.label));
-}
-
-TEST(AxisLayoutTest, ManyDecadesAreMarkedWithPowersOfTen) {
-  const AxisLayout sut = vertical({.scale = Scale::kLogarithmic}, 1.1e-6, 0.9);
-  EXPECT_THAT(labels(sut), ElementsAre("10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰"));
+// The same share of the span on both sides, of its logarithm too; none below what stands on zero.
+TEST(AxisLayoutTest, ThereIsRoomBeyondTheValuesUnlessAlongALine) {
+  const AxisLayout linear = vertical({}, 0.0, 10.0);
+  EXPECT_NEAR(linear.high - 10.0, 0.6, 0.4);
+  EXPECT_NEAR(-linear.low, linear.high - 10.0, 1e-12);
+  const AxisLayout logarithmic = vertical({.scale = Scale::kLogarithmic}, 1.0, 1e10);
+  EXPECT_NEAR(std::log10(logarithmic.high), linear.high, 1e-9);
+  EXPECT_NEAR(std::log10(logarithmic.low), linear.low, 1e-9);
+  const Extent bars{.low = 0.0, .high = 10.0, .marks = true, .from_zero = true};
+  EXPECT_EQ(lay_out_axis({}, bars, 200.0, false, false, kFontSize_px).low, 0.0);
+  EXPECT_EQ(lay_out_axis({}, bars, 200.0, false, false, kFontSize_px).high, linear.high);
+  EXPECT_NEAR(lay_out_axis({}, bars, 700.0, true, true, kFontSize_px).high, 10.3, 0.2);
 }
 
 TEST(AxisLayoutTest, LessThanADecadeOnALogarithmicAxisStillHasTwoTicks) {
   const AxisLayout sut = vertical({.scale = Scale::kLogarithmic}, 3.1, 3.9);
   EXPECT_GE(sut.major.size(), 2U);
-}
-
-TEST(AxisLayoutTest, APhaseIsMarkedAtMultiplesOf45AndEndsOnThem) {
-  const AxisLayout sut = vertical({.scale = Scale::kDegrees}, -200.0, -100.0);
-  EXPECT_EQ(sut.low, -225.0);
-  EXPECT_EQ(sut.high, -90.0);
-  EXPECT_THAT(labels(sut), ElementsAre("−225", "−180", "−135", "−90"));
-}
-
-TEST(AxisLayoutTest, AWidePhaseIsMarkedAtMultiplesOf90Or180) {
-  const AxisLayout sut = vertical({.scale = Scale::kDegrees}, -700.0, 0.0);
-  for (const AxisTick& tick : sut.major) EXPECT_EQ(std::fmod(tick.at, 180.0), 0.0);
-}
-
-TEST(AxisLayoutTest, LimitsGivenAreLimitsKept) {
-  const AxisLayout sut = vertical({.low = 0.0, .high = 80.0}, 17.0, 63.0);
-  EXPECT_EQ(sut.low, 0.0);
-  EXPECT_EQ(sut.high, 80.0);
-}
-
-TEST(AxisLayoutTest, AStepGivenIsTheStepUsed) {
-  const AxisLayout sut = vertical({.low = 0.0, .high = 1.0, .tick_step = 0.25}, 0.0, 1.0);
-  EXPECT_THAT(labels(sut), ElementsAre("0", "0.25", "0.50", "0.75", "1.00"));
 }
 
 TEST(AxisLayoutTest, CategoriesReplaceNumbersAndThoseOutsideAreLeftOut) {
