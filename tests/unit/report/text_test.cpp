@@ -79,7 +79,9 @@ TEST(TextTest, EstimatedWidthCoversTheFontsOwn) {
   };
   for (const Known& known :
        {Known{"0.25", 3 * 1303 + 651.0}, Known{"−180", 1716 + 3 * 1303.0},
-        Known{"model", 1995 + 1253 + 1300 + 1260 + 569.0}, Known{"WWW", 3 * 2025.0}}) {
+        Known{"model", 1995 + 1253 + 1300 + 1260 + 569.0}, Known{"WWW", 3 * 2025.0},
+        Known{"fit", 721 + 569 + 803.0}, Known{"ABC", 1401 + 1405 + 1430.0},
+        Known{"100 %", 3 * 1303 + 651 + 1946.0}}) {
     const double width_px = known.width_units / 2048.0 * 13.0;
     EXPECT_GE(text_width_px(known.text, 13.0), width_px) << known.text;
     EXPECT_LE(text_width_px(known.text, 13.0), width_px * 1.4) << known.text;

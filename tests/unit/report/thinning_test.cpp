@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "apps/libraries/report/excerpt.hpp"
+
 namespace stillhand::report::thinning_test {
 
 using testing::ElementsAre;
@@ -38,6 +40,7 @@ TEST(ThinLineTest, TheExtremaOfEveryColumnSurvive) {
   const auto y = wave(5000);
   const auto kept = thin_line(x, y, y, kWidth_px);
   EXPECT_LE(kept.size(), 4 * 100U);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), std::less_equal<>())) << "each once";
   for (int column = 0; column < 100; ++column) {
     const auto begin = y.begin() + column * 50;
     const auto [low, high] = std::minmax_element(begin, begin + 50);
@@ -51,11 +54,6 @@ TEST(ThinLineTest, TheExtremaOfEveryColumnSurvive) {
     ASSERT_EQ(kept_low, *low) << "column " << column;
     ASSERT_EQ(kept_high, *high) << "column " << column;
   }
-}
-
-TEST(ThinLineTest, KeptPointsStayInOrderAndOccurOnce) {
-  const auto kept = thin_line(columns(5000), wave(5000), wave(5000), kWidth_px);
-  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), std::less_equal<>()));
 }
 
 TEST(ThinLineTest, ABandKeepsTheLowestOfItsLowerAndTheHighestOfItsUpperEdge) {
@@ -83,6 +81,20 @@ TEST(ThinPointsTest, OfPointsOnOneSquareTheFirstStays) {
   const std::vector<double> x{0.1, 0.9, 1.1, 0.2};
   const std::vector<double> y{5.1, 5.9, 5.5, 6.0};
   EXPECT_THAT(thin_points(x, y), ElementsAre(0, 2, 3));
+}
+
+// Ten seconds, or 40 cycles where these hold fewer than 4 or more than 100; all, if there are
+// fewer.
+TEST(ExcerptTest, AFigureShowsTenSecondsOrFortyCycles) {
+  const auto samples = [](double frequency_hz, double rate_hz) {
+    std::vector<double> y;
+    for (int i = 0; i < 5000; ++i) y.push_back(std::sin(6.2832 * frequency_hz / rate_hz * i));
+    return static_cast<double>(excerpt_length(y, rate_hz));
+  };
+  for (const double frequency_hz : {0.0, 0.5, 9.5}) EXPECT_EQ(samples(frequency_hz, 100.0), 1000.0);
+  EXPECT_NEAR(samples(0.35, 10.0), 40.0 / 0.35 * 10.0, 20.0);
+  EXPECT_NEAR(samples(10.5, 100.0), 40.0 / 10.5 * 100.0, 4.0);
+  EXPECT_EQ(samples(0.05, 10.0), 5000.0);
 }
 
 }  // namespace stillhand::report::thinning_test
