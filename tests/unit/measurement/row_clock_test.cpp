@@ -38,31 +38,44 @@ std::vector<double> jittered(double rate_hz, int count, double jitter_periods) {
   return time_s;
 }
 
-TEST(RowClockTest, EvenStampsGiveTheirRateAndWholePlaces) {
-  const RowPlaces sut = place_rows(at(printed(100.0, 1000, 1e-6)));
-  EXPECT_EQ(sut.rate_hz, 100.0);
-  EXPECT_FALSE(sut.as_stamped);
-  ASSERT_EQ(sut.stretches.size(), 1u);
-  EXPECT_EQ(sut.stretches[0].grid_samples, 1000u);
-  EXPECT_EQ(sut.places.front(), 0.0);
-  EXPECT_EQ(sut.places.back(), 999.0);
-}
-
-// 128 Hz in whole ms: half of the rows are more than 3 % of a period off, and yet on the grid.
-TEST(RowClockTest, RoundedStampsStayOnTheGrid) {
-  const RowPlaces sut = place_rows(at(printed(128.0, 2000, 1e-3)));
-  EXPECT_GT(sut.jitter_periods, 0.02);
-  EXPECT_FALSE(sut.as_stamped);
-  EXPECT_EQ(sut.rate_hz, 128.0);
-  EXPECT_EQ(sut.places.back(), 1999.0);
-}
-
-// 700 Hz in whole ms comes in steps of 1 and 2 ms.
-TEST(RowClockTest, StampsAsCoarseAsThePeriodStillCount) {
-  const RowPlaces sut = place_rows(at(printed(700.0, 5000, 1e-3)));
-  EXPECT_EQ(sut.rate_hz, 700.0);
-  EXPECT_EQ(sut.places.back(), 4999.0);
-  EXPECT_FALSE(sut.as_stamped);
+TEST(RowClockTest, PrintedStampsGiveTheirRateAndWholePlaces) {
+  struct Case {
+    double rate_hz;
+    int count;
+    double resolution_s;
+    double wanted_hz;
+    double within_hz = 0.0;
+    double since_s = 0.0;
+  };
+  const Case cases[]{
+      {100.0, 1000, 1e-6, 100.0},
+      {128.0, 2000, 1e-3, 128.0},
+      {700.0, 5000, 1e-3, 700.0},                 // in steps of 1 and 2 ms
+      {1000.0, 3000, 1e-3, 1000.0, 0.0, 1.7e9},   // since 1970
+      {1.0 / 3600.01, 1000, 1e-3, 1.0 / 3600.0},  // 0.3 % of a period off at the end: whole seconds
+      // 2 % of a period over 999 periods of 100 Hz are 0.002 Hz.
+      {100.0019, 1000, 1e-9, 100.0},
+      {100.0021, 1000, 1e-9, 100.0021, 1e-6},
+      // A microsecond over 20,000 periods of 1.6384 ms is 3e-8.
+      {610.3515625, 20'000, 1e-6, 610.3515625, 610.0 * 3e-8},
+      // The slope is good to 1 ms / 5000^1.5, 2e-6 of the period, and 0.3 Hz are 4e-4.
+      {700.3, 5000, 1e-3, 700.3, 0.01},
+  };
+  for (const Case& each : cases) {
+    std::vector<double> time_s = printed(each.rate_hz, each.count, each.resolution_s);
+    for (double& t : time_s) t += each.since_s;
+    const RowPlaces sut = place_rows(at(time_s));
+    EXPECT_NEAR(sut.rate_hz, each.wanted_hz, each.within_hz) << each.rate_hz;
+    EXPECT_FALSE(sut.as_stamped) << each.rate_hz;
+    ASSERT_EQ(sut.stretches.size(), 1u);
+    EXPECT_EQ(sut.stretches[0].grid_samples, static_cast<std::size_t>(each.count));
+    EXPECT_EQ(sut.places.front(), 0.0);
+    EXPECT_EQ(sut.places.back(), each.count - 1.0) << each.rate_hz;
+    // Whole ms of 128 Hz: half of the rows are more than 3 % of a period off, and yet on the grid.
+    if (each.rate_hz == 128.0) {
+      EXPECT_GT(sut.jitter_periods, 0.02);
+    }
+  }
 }
 
 // Ticks of 1 ms have a resolution of one period too; here the steps of two are gaps.
@@ -78,29 +91,6 @@ TEST(RowClockTest, RowsMissingFromTicksAreGaps) {
     EXPECT_FALSE(sut.as_stamped);
     EXPECT_EQ(sut.places.back(), std::round(time_s.back() * 1000.0));
   }
-}
-
-TEST(RowClockTest, ARateThatIsNoWholeNumberIsFoundToTheStampsResolution) {
-  // A microsecond over 20,000 periods of 1.6384 ms is 3e-8.
-  const RowPlaces sut = place_rows(at(printed(610.3515625, 20'000, 1e-6)));
-  EXPECT_NEAR(sut.rate_hz, 610.3515625, 610.0 * 3e-8);
-  EXPECT_FALSE(sut.as_stamped);
-}
-
-// 700.3 Hz in whole ms, 5000 rows: the slope is good to 1 ms / 5000^1.5, 2e-6 of the period, and
-// 0.3 Hz are 4e-4.
-TEST(RowClockTest, ARateBesideAWholeNumberIsNotRoundedToIt) {
-  const RowPlaces sut = place_rows(at(printed(700.3, 5000, 1e-3)));
-  EXPECT_NEAR(sut.rate_hz, 700.3, 0.01);
-}
-
-TEST(RowClockTest, TimesSince1970KeepTheirPlaces) {
-  std::vector<double> time_s = printed(1000.0, 3000, 1e-3);
-  for (double& t : time_s) t += 1.7e9;
-  const RowPlaces sut = place_rows(at(time_s));
-  EXPECT_EQ(sut.rate_hz, 1000.0);
-  EXPECT_FALSE(sut.as_stamped);
-  EXPECT_EQ(sut.places.back(), 2999.0);
 }
 
 // Uniform jitter of +-j periods has a median magnitude of j/2.
