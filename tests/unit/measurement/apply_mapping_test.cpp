@@ -62,6 +62,10 @@ TEST(ApplyMappingTest, TheRefusalShowsTheMappingThatWouldDo) {
               HasSubstr("ride.csv: got the columns 'time', 'acc', 'force', want 't [s]' and 'name "
                         "[unit]'; if they are these, add --map 'time=t [s]' 'acc=a_y [m/s^2]' "
                         "'force=f [N]'"));
+  EXPECT_EQ(read("time,acc,force\n0,1,2\n0.01,1,2\n",
+                 mapping({"time=t [s]", "acc=a_y [m/s^2]", "force=f [N]"}))
+                .rows.row_count(),
+            2u);
   EXPECT_THAT(error_of("timestamp,acc_x (g),ay\n0,1,2\n10,1,2\n20,1,2\n"),
               HasSubstr("--map 'timestamp=t [ms]' 'acc_x (g)=a_x [g]' 'ay=a_y [m/s^2]'"))
       << "steps of 10 are milliseconds";
@@ -71,13 +75,6 @@ TEST(ApplyMappingTest, TheRefusalShowsTheMappingThatWouldDo) {
   EXPECT_THAT(error_of("p,v_y [m/s],force\n0,1,2\n0.1,1,2\n"),
               HasSubstr("no other column has a unit of a_y, such as m/s^2"))
       << "a mapping that the next call would refuse";
-}
-
-// The mapping of a refusal is accepted as it is.
-TEST(ApplyMappingTest, TheSuggestedMappingWorks) {
-  const std::string text = "time,acc,force\n0,1,2\n0.01,1,2\n";
-  const MappedRows sut = read(text, mapping({"time=t [s]", "acc=a_y [m/s^2]", "force=f [N]"}));
-  EXPECT_EQ(sut.rows.row_count(), 2u);
 }
 
 TEST(ApplyMappingTest, RowsThatLackAValueAreLeftOutAndCounted) {
