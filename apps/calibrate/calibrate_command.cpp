@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "apps/libraries/report/text/text.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/check_number.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::calibrate {
 namespace {
@@ -34,29 +34,29 @@ std::string check_short(const std::string& word) {
                                           : "got a long text, want at most 100 bytes in one line";
 }
 
-void add_measures(CLI::App& calibrate, CalibrateOptions& options) {
+void add_measures(command_line::Command& calibrate, CalibrateOptions& options) {
   calibrate
       .add_option("--seconds", options.seconds,
                   "force, acceleration, angle: time for which each step is read [s]")
-      ->check(settings::number_between(0.1, 60.0));
+      .check(settings::number_between(0.1, 60.0));
   calibrate
       .add_option("--tolerance", options.tolerance,
                   "force, acceleration, angle: largest distance from the straight line, and "
                   "largest drift, as a share of the largest quantity; more is refused [-]")
-      ->check(settings::number_between(0.0001, 0.5));
+      .check(settings::number_between(0.0001, 0.5));
   calibrate
       .add_option("--motion", options.motion_m,
                   "platform: largest distance from where it stands [m]")
-      ->check(settings::number_between(0.001, 0.1));
+      .check(settings::number_between(0.001, 0.1));
   calibrate
       .add_option("--periods", options.periods, "platform: periods of 2 s that are measured [-]")
-      ->check(CLI::Range(2, 200));
+      .between(2, 200);
   calibrate
       .add_option("--push", options.push_n,
                   "check: weight that you hang on the cord, and largest force of the motor [N]")
-      ->check(settings::number_between(0.2, 5.0));
+      .check(settings::number_between(0.2, 5.0));
   calibrate.add_option("--step", options.step_m, "check: step of the platform [m]")
-      ->check(settings::number_between(0.0005, 0.01));
+      .check(settings::number_between(0.0005, 0.01));
 }
 
 void say_following(const std::string& signal, const CalibrateOptions& options) {
@@ -70,10 +70,10 @@ void say_following(const std::string& signal, const CalibrateOptions& options) {
 
 }  // namespace
 
-void add_calibrate_command(CLI::App& cli, int& status) {
+void add_calibrate_command(command_line::Command& cli, int& status) {
   auto options = std::make_shared<CalibrateOptions>();
   auto signal = std::make_shared<std::string>();
-  CLI::App* calibrate = cli.add_subcommand(
+  command_line::Command calibrate = cli.add_subcommand(
       "calibrate",
       "Calibrates the devices of a rig (devices.yaml of --config). It says what to do, step by "
       "step,\nand waits for Enter.\n"
@@ -87,33 +87,33 @@ void add_calibrate_command(CLI::App& cli, int& status) {
       "The first three arm no motor. The result goes into sensing.yaml and calibration.yaml of "
       "--config;\na session with devices does not begin without it.\n"
       "Example: stillhand calibrate force --config hall --person kl --known 0,5,10,-5,-10");
-  calibrate->add_option("signal", *signal, "what to calibrate, as above")
-      ->required()
-      ->check(CLI::IsMember(std::vector<std::string>(kOrder.begin(), kOrder.end())));
+  calibrate.add_option("signal", *signal, "what to calibrate, as above")
+      .required()
+      .one_of({kOrder.begin(), kOrder.end()});
   calibrate
-      ->add_option("--config", options->config,
-                   "your folder of settings, with devices.yaml; to begin with, copy the folder "
-                   "that `stillhand lab --help` names at --config")
-      ->required()
-      ->check(settings::check_name);
+      .add_option("--config", options->config,
+                  "your folder of settings, with devices.yaml; to begin with, copy the folder "
+                  "that `stillhand lab --help` names at --config")
+      .required()
+      .check(settings::check_name);
   calibrate
-      ->add_option("--person", options->person,
-                   "name or initials of who does it; calibration.yaml keeps them")
-      ->required()
-      ->check(settings::check_name)
-      ->check(check_short);
+      .add_option("--person", options->person,
+                  "name or initials of who does it; calibration.yaml keeps them")
+      .required()
+      .check(settings::check_name)
+      .check(check_short);
   calibrate
-      ->add_option("--sensor", options->sensor,
-                   "serial number that is printed on the sensor; calibration.yaml keeps it")
-      ->check(check_short);
-  calibrate->add_option(
+      .add_option("--sensor", options->sensor,
+                  "serial number that is printed on the sensor; calibration.yaml keeps it")
+      .check(check_short);
+  calibrate.add_option(
       "--known", options->known,
       "force, acceleration, angle: quantities of the steps, positive to the right, three or more "
       "to both sides of 0; the first comes again at the end. force in N, or 1kg for its weight; "
       "acceleration in m/s^2, or 1g; angle in rad, or 10deg [force 0,5,10,-5,-10; acceleration "
       "0,1g,-1g; angle 0,10deg,20deg,-10deg,-20deg]");
-  add_measures(*calibrate, *options);
-  calibrate->callback([options, signal, &status] {
+  add_measures(calibrate, *options);
+  calibrate.callback([options, signal, &status] {
     want_terminal();
     const runtime::Stop interrupted;
     if (*signal == "platform") {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/close_the_loop/closed_loop_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -24,6 +23,7 @@
 #include "services/files/diagnosis/model_file.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/files/rig/sealed_file.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/real_time.hpp"
 #include "services/system/process/run_jobs.hpp"
 #include "services/system/process/stop.hpp"
@@ -170,29 +170,30 @@ void run_live(const Arguments& arguments) {
 }
 
 // Effect, subject and repeats of a run in one process.
-void add_comparison_options(CLI::App& verb, const std::shared_ptr<Arguments>& arguments,
-                            CLI::Option* effect, CLI::Option* live) {
+void add_comparison_options(command_line::Command& verb,
+                            const std::shared_ptr<Arguments>& arguments,
+                            command_line::Option effect, command_line::Option live) {
   verb.add_flag("--off-catalogue", arguments->off_catalogue,
                 "the effect is one that no kind of `stillhand diagnose` describes")
-      ->needs(effect)
-      ->excludes(live);
+      .needs(effect)
+      .excludes(live);
   verb.add_option("--repeats", arguments->repeats,
                   "trials of each condition, with other draws of target, motion and remnant; with "
                   "--live one")
-      ->check(CLI::Range(1, 1000))
-      ->excludes(live);
+      .between(1, 1000)
+      .excludes(live);
   verb.add_option(
           "--subject", arguments->lab.subject,
           "number of the subject that `stillhand study --seed` draws; 0: the one in the settings")
-      ->check(CLI::Range(0, 10000));
+      .between(0, 10000);
   verb.add_option("--threads", arguments->threads,
                   "number of threads; the results do not depend on it; 0: one per core")
-      ->check(CLI::Range(0, 256));
+      .between(0, 256);
 }
 
 }  // namespace
 
-void add_closed_loop_command(CLI::App& cli, int& status) {
+void add_closed_loop_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
   lab::LabOptions& lab = arguments->lab;
   lab::set_places(lab);
@@ -200,7 +201,7 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   lab.subject = 1;
   lab.protocol.identify_s = 120.0;  // paper III-A
   lab.protocol.conditions = session::parse_conditions("A,B,C");
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "close-the-loop",
       "Adds to the canceller what its model lacks. The verb identifies with the stick pegged, runs "
       "A,\nB and C with the paper's model, diagnoses the recordings, adds the effects to the model "
@@ -208,31 +209,32 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
       "improves. With --pegged\nit works on recordings, without a rig.\nExamples: stillhand "
       "close-the-loop --undeclared-effect 7 --out loop1\n          stillhand close-the-loop "
       "--pegged day1.csv day2.csv --out loop2");
-  CLI::Option* effect =
-      verb->add_option(
+  command_line::Option effect =
+      verb.add_option(
               "--undeclared-effect", lab.undeclared_effect,
               "seed of an effect that only the rig knows, revealed after the verdict; 0: none")
-          ->check(session::check_seed);
-  CLI::Option* seed =
-      verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
-          ->check(session::check_seed);
-  verb->add_option("--out", lab.out, "folder of report, figures and numbers")->required();
-  CLI::Option* trial =
-      verb->add_option("--trial-seconds", lab.protocol.trial_s, "length of a tracking trial [s]");
-  CLI::Option* identify = verb->add_option("--identify-seconds", lab.protocol.identify_s,
-                                           "length of the pegged trial [s]; the paper's is 120");
-  CLI::Option* live =
-      verb->add_flag("--live", arguments->live,
-                     "over DDS, with every process, in real time; the recording is kept");
-  verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")->needs(live);
-  verb->add_option("--rig", lab.rig, "number of the rig on the bus, which the model names");
-  add_comparison_options(*verb, arguments, effect, live);
-  diagnose::add_diagnose_options(*verb, arguments->recorded.diagnose);
+          .check(session::check_seed);
+  command_line::Option seed =
+      verb.add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
+          .check(session::check_seed);
+  verb.add_option("--out", lab.out, "folder of report, figures and numbers").required();
+  command_line::Option trial =
+      verb.add_option("--trial-seconds", lab.protocol.trial_s, "length of a tracking trial [s]");
+  command_line::Option identify =
+      verb.add_option("--identify-seconds", lab.protocol.identify_s,
+                      "length of the pegged trial [s]; the paper's is 120");
+  command_line::Option live =
+      verb.add_flag("--live", arguments->live,
+                    "over DDS, with every process, in real time; the recording is kept");
+  verb.add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232").needs(live);
+  verb.add_option("--rig", lab.rig, "number of the rig on the bus, which the model names");
+  add_comparison_options(verb, arguments, effect, live);
+  diagnose::add_diagnose_options(verb, arguments->recorded.diagnose);
   arguments->recorded.declared = declared_drive(session::CoreConfigs{}.rig);
-  add_recorded_options(*verb, arguments->recorded,
-                       {effect, seed, trial, identify, live, verb->get_option("--repeats"),
-                        verb->get_option("--subject")});
-  verb->callback([arguments, &status] {
+  add_recorded_options(verb, arguments->recorded,
+                       {effect, seed, trial, identify, live, verb.get_option("--repeats"),
+                        verb.get_option("--subject")});
+  verb.callback([arguments, &status] {
     if (!arguments->recorded.pegged.empty()) {
       run_recorded(arguments->recorded, arguments->lab.out, arguments->lab.rig,
                    threads_of(*arguments));

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -30,6 +29,7 @@
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/check_number.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
@@ -121,12 +121,12 @@ int run(const ControlModelArguments& arguments) {
 
 }  // namespace
 
-void add_control_model_command(CLI::App& cli, int& status) {
+void add_control_model_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<ControlModelArguments>();
   lab::LabOptions places;
   lab::set_places(places);
   arguments->config = places.config;
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "control-model",
       "Converts a model that `stillhand diagnose --save` wrote to the canceller's 1 kHz, for\n"
       "`stillhand lab --model`, and prints for each effect what the motor will do about it.\n"
@@ -136,26 +136,26 @@ void add_control_model_command(CLI::App& cli, int& status) {
       "REC is the recording that was diagnosed: its ranges are those of the model's tables.\n"
       "Example: stillhand control-model model.json run1/session.mcap --trial I --save "
       "control.json");
-  verb->add_option("MODEL", arguments->model, "model file")->required();
-  verb->add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
-      ->required();
-  verb->add_option("--trial", arguments->read.trial,
-                   "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(*verb, arguments->read);
-  verb->add_option("--save", arguments->save, "file of the control model")
-      ->required()
-      ->check(settings::check_name);
-  verb->add_option("--json", arguments->json,
-                   "file of what becomes of each effect, with the difference of its force")
-      ->check(settings::check_name);
-  verb->add_option("--rig", arguments->rig, "number of the rig that the model is for");
-  verb->add_option("--lead-ms", arguments->lead_ms,
-                   "delay of the motor [ms]; the model predicts this time ahead")
-      ->check(settings::number_between(0.0, 100.0));
-  verb->add_flag("--as-it-is", arguments->as_it_is, "gain and phase do not adapt while it runs");
-  verb->add_option("--config", arguments->config,
-                   "folder with the settings of each service: the canceller's bounds");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("MODEL", arguments->model, "model file").required();
+  verb.add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
+      .required();
+  verb.add_option("--trial", arguments->read.trial,
+                  "trial of a session's recording: its number, or the letter of its condition");
+  measurement::add_read_options(verb, arguments->read);
+  verb.add_option("--save", arguments->save, "file of the control model")
+      .required()
+      .check(settings::check_name);
+  verb.add_option("--json", arguments->json,
+                  "file of what becomes of each effect, with the difference of its force")
+      .check(settings::check_name);
+  verb.add_option("--rig", arguments->rig, "number of the rig that the model is for");
+  verb.add_option("--lead-ms", arguments->lead_ms,
+                  "delay of the motor [ms]; the model predicts this time ahead")
+      .check(settings::number_between(0.0, 100.0));
+  verb.add_flag("--as-it-is", arguments->as_it_is, "gain and phase do not adapt while it runs");
+  verb.add_option("--config", arguments->config,
+                  "folder with the settings of each service: the canceller's bounds");
+  verb.callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::close_the_loop

@@ -57,42 +57,42 @@ void check_folder(const RecordedOptions& options, const std::filesystem::path& o
   }
 }
 
-CLI::Option* add_files(CLI::App& verb, const char* name, std::vector<std::string>& files,
-                       const char* help) {
-  return verb.add_option(name, files, help)->check(CLI::ExistingFile)->group("From recordings");
+command_line::Option add_files(command_line::Command& verb, const char* name,
+                               std::vector<std::string>& files, const char* help) {
+  return verb.add_option(name, files, help).existing_file().group("From recordings");
 }
 
 }  // namespace
 
-void add_recorded_options(CLI::App& verb, RecordedOptions& options,
-                          const std::vector<CLI::Option*>& others) {
-  CLI::Option* pegged = add_files(
+void add_recorded_options(command_line::Command& verb, RecordedOptions& options,
+                          const std::vector<command_line::Option>& others) {
+  command_line::Option pegged = add_files(
       verb, "--pegged", options.pegged,
       "recording(s) with the stick held, MCAP, CSV, MATLAB, HDF5 or sound: closes the loop "
       "from recordings, without a rig");
   add_files(verb, "--moving", options.moving,
             "recording(s) of condition B, 1 kHz with theta, f and f_motor: friction and ripple")
-      ->needs(pegged);
+      .needs(pegged);
   add_files(verb, "--cancelled", options.cancelled,
             "recording(s) of condition C, with the same channels: the delay of motor and load cell")
-      ->needs(pegged);
+      .needs(pegged);
   add_files(verb, "--unseen", options.unseen,
             "pegged recording(s) that judge the model [the last of --pegged, or its last 30 %]")
-      ->needs(pegged);
+      .needs(pegged);
   verb.add_option("--input", options.diagnose.inputs,
                   "inputs of the model: channel(s), comma-separated")
-      ->delimiter(',')
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1)
-      ->needs(pegged)
-      ->group("From recordings");
+      .delimiter(',')
+      .takes_all()
+      .expected(1, 1)
+      .needs(pegged)
+      .group("From recordings");
   verb.add_option("--output", options.diagnose.output, "channel that the model predicts")
-      ->needs(pegged)
-      ->group("From recordings");
-  for (CLI::Option* option : measurement::add_read_options(verb, options.read)) {
-    option->needs(pegged);
+      .needs(pegged)
+      .group("From recordings");
+  for (command_line::Option option : measurement::add_read_options(verb, options.read)) {
+    option.needs(pegged);
   }
-  for (CLI::Option* other : others) pegged->excludes(other);
+  for (command_line::Option other : others) pegged.excludes(other);
 }
 
 void run_recorded(RecordedOptions options, const std::filesystem::path& out, std::uint32_t rig,

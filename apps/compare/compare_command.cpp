@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/compare/compare_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
@@ -17,6 +16,7 @@
 #include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::compare {
 namespace {
@@ -45,23 +45,23 @@ void run_compare(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& cli, int& status) {
+void add_compare_command(command_line::Command& cli, int& status) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* compare = cli.add_subcommand(
+  command_line::Command compare = cli.add_subcommand(
       "compare",
       "Puts studies or sessions side by side: every condition but A and B is an option; the "
       "result\n"
       "names which to use for which metric, whom it leaves worse off, and how sure that is.\n"
       "Example: stillhand compare study1 study2 --out comparison1");
   compare
-      ->add_option("folders", options->folders,
-                   "folders with a summary.json: of study, lab, experiment report or "
-                   "close-the-loop")
-      ->required()
-      ->check(settings::check_name);
-  compare->add_option("--out", options->out, "folder for page, figure and numbers [none]")
-      ->check(settings::check_name);
-  compare->callback([options, &status] {
+      .add_option("folders", options->folders,
+                  "folders with a summary.json: of study, lab, experiment report or "
+                  "close-the-loop")
+      .required()
+      .check(settings::check_name);
+  compare.add_option("--out", options->out, "folder for page, figure and numbers [none]")
+      .check(settings::check_name);
+  compare.callback([options, &status] {
     run_compare(*options);
     status = 0;
   });

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -20,6 +19,7 @@
 #include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/shipped.hpp"
 
 namespace stillhand::deploy {
@@ -117,48 +117,47 @@ int run_check(const Arguments& arguments) {
 
 }  // namespace
 
-void add_deploy_command(CLI::App& cli, int& status) {
+void add_deploy_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
   arguments->profiles = runtime::shipped("qos/profiles.xml");
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "deploy",
       "Sets up a lab of several machines from one inventory (deploy/inventory.example.yaml).\n"
       "Example: stillhand deploy generate lab.yaml --out generated\n"
       "         stillhand deploy check lab.yaml          (on each machine)");
-  verb->require_subcommand(1);
-  const auto common = [&](CLI::App* sub) {
-    sub->add_option("inventory", arguments->inventory,
-                    "YAML file with the services of each machine")
-        ->required();
-    sub->add_option("--profiles", arguments->profiles,
-                    "QoS profiles from which the lab's profiles are made");
+  verb.require_subcommand();
+  const auto common = [&](command_line::Command& sub) {
+    sub.add_option("inventory", arguments->inventory, "YAML file with the services of each machine")
+        .required();
+    sub.add_option("--profiles", arguments->profiles,
+                   "QoS profiles from which the lab's profiles are made");
   };
-  CLI::App* make = verb->add_subcommand(
+  command_line::Command make = verb.add_subcommand(
       "generate",
       "Writes DIR/HOST for every machine: profiles.xml (its transport and discovery), systemd\n"
       "units, stillhand.target, firewall.nft, sysctl.conf. It writes all files or none, and the\n"
       "same inventory gives the same files. deploy/README.md says where each file belongs.");
   common(make);
-  make->add_option("--out", arguments->out, "folder for the machines' folders")
-      ->required()
-      ->check(settings::check_name);
-  make->callback([arguments, &status] { status = run_generate(*arguments); });
-  CLI::App* check =
-      verb->add_subcommand("check",
-                           "Checks this machine as a host of the lab: address, clock, rights, "
-                           "buffers, ports,\nprocessors, certificates and keys. Each check prints "
-                           "one line, with the remedy if something\nis wrong. Exit status: 0 "
-                           "nothing is wrong, 1 something is wrong, 2 the inventory is refused.");
+  make.add_option("--out", arguments->out, "folder for the machines' folders")
+      .required()
+      .check(settings::check_name);
+  make.callback([arguments, &status] { status = run_generate(*arguments); });
+  command_line::Command check =
+      verb.add_subcommand("check",
+                          "Checks this machine as a host of the lab: address, clock, rights, "
+                          "buffers, ports,\nprocessors, certificates and keys. Each check prints "
+                          "one line, with the remedy if something\nis wrong. Exit status: 0 "
+                          "nothing is wrong, 1 something is wrong, 2 the inventory is refused.");
   common(check);
-  check->add_option("--host", arguments->host,
-                    "this machine's host; by default the one whose address it has");
+  check.add_option("--host", arguments->host,
+                   "this machine's host; by default the one whose address it has");
   check
-      ->add_option("--devices", arguments->devices,
-                   "devices.yaml of a rig of devices: also check the ports and interfaces it names")
-      ->check(settings::check_name);
-  check->add_option("--json", arguments->json, "also write the results to this file")
-      ->check(settings::check_name);
-  check->callback([arguments, &status] { status = run_check(*arguments); });
+      .add_option("--devices", arguments->devices,
+                  "devices.yaml of a rig of devices: also check the ports and interfaces it names")
+      .check(settings::check_name);
+  check.add_option("--json", arguments->json, "also write the results to this file")
+      .check(settings::check_name);
+  check.callback([arguments, &status] { status = run_check(*arguments); });
 }
 
 }  // namespace stillhand::deploy

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -32,6 +31,7 @@
 #include "services/files/diagnosis/model_file.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/run_jobs.hpp"
 #include "services/system/process/shipped.hpp"
 #include "services/system/process/stop.hpp"
@@ -210,9 +210,9 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_diagnose_command(CLI::App& cli, int& status) {
+void add_diagnose_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "diagnose",
       "Finds what the model lacks. Fits a linear model to the recording, takes the residual of "
       "its\nfree run (its prediction from the inputs alone) on samples that the fit has not seen, "
@@ -222,31 +222,31 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       "columns, use --map. Several "
       "recordings of one rig\nare diagnosed together.\nExample: stillhand diagnose ride.csv "
       "--input a_y --output f --json out.json --report DIR");
-  add_recordings(*verb, arguments->recordings, arguments->read, arguments->options);
-  verb->add_option("--stability", arguments->stability,
-                   "repeat the diagnosis this many times, a fifth of the recording left out at "
-                   "random, and count the verdicts [0: no repetition]")
-      ->default_str("")
-      ->check(CLI::Range(0, 1000));
-  verb->add_option("--plan", arguments->plan,
-                   "plan.json of `stillhand plan-run`: the last REC is its run, and the verb says "
-                   "which of the tied causes is left")
-      ->check(settings::check_name);
-  verb->add_flag("--lateness", arguments->read.lateness,
-                 "take the channels of lateness of a session (age of the answers, lost ticks, ...) "
-                 "for candidates too");
-  verb->add_option("--config", arguments->config,
-                   "folder of the settings that a session ran with, to split what its motor left "
-                   "into causes")
-      ->check(settings::check_name);
-  verb->add_option("--save", arguments->save,
-                   "file for the diagnosed model, for `stillhand predict`")
-      ->check(settings::check_name);
-  verb->add_option("--json", arguments->json, "file for the verdict; - is standard output")
-      ->check(settings::check_name);
-  verb->add_option("--report", arguments->report, "folder for a page with figures")
-      ->check(settings::check_name);
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  add_recordings(verb, arguments->recordings, arguments->read, arguments->options);
+  verb.add_option("--stability", arguments->stability,
+                  "repeat the diagnosis this many times, a fifth of the recording left out at "
+                  "random, and count the verdicts [0: no repetition]")
+      .default_str("")
+      .between(0, 1000);
+  verb.add_option("--plan", arguments->plan,
+                  "plan.json of `stillhand plan-run`: the last REC is its run, and the verb says "
+                  "which of the tied causes is left")
+      .check(settings::check_name);
+  verb.add_flag("--lateness", arguments->read.lateness,
+                "take the channels of lateness of a session (age of the answers, lost ticks, ...) "
+                "for candidates too");
+  verb.add_option("--config", arguments->config,
+                  "folder of the settings that a session ran with, to split what its motor left "
+                  "into causes")
+      .check(settings::check_name);
+  verb.add_option("--save", arguments->save,
+                  "file for the diagnosed model, for `stillhand predict`")
+      .check(settings::check_name);
+  verb.add_option("--json", arguments->json, "file for the verdict; - is standard output")
+      .check(settings::check_name);
+  verb.add_option("--report", arguments->report, "folder for a page with figures")
+      .check(settings::check_name);
+  verb.callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::diagnose

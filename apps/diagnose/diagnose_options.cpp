@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/diagnose/diagnose_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "apps/diagnose/enough.hpp"
 #include "services/files/settings/check_number.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::diagnose {
 
-void add_recordings(CLI::App& verb, std::vector<std::string>& recordings,
+void add_recordings(command_line::Command& verb, std::vector<std::string>& recordings,
                     measurement::ReadOptions& read, diagnosis::DiagnoseOptions& options) {
-  verb.add_option("REC", recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")->required();
+  verb.add_option("REC", recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound").required();
   verb.add_option("--input", options.inputs, "inputs of the model: channel(s), comma-separated")
-      ->delimiter(',')
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1);
+      .delimiter(',')
+      .takes_all()
+      .expected(1, 1);
   verb.add_option("--output", options.output, "channel that the model predicts");
   add_diagnose_options(verb, options);
   verb.add_option("--trial", read.trial,
@@ -38,7 +38,7 @@ std::vector<diagnosis::Measurement> read_recordings(const std::vector<std::strin
   return parts;
 }
 
-void add_diagnose_options(CLI::App& verb, diagnosis::DiagnoseOptions& options) {
+void add_diagnose_options(command_line::Command& verb, diagnosis::DiagnoseOptions& options) {
   constexpr double kMostForce_n = 100.0;  // larger than any force of a stick
   verb.add_option_function<std::string>(
           "--model",
@@ -49,17 +49,16 @@ void add_diagnose_options(CLI::App& verb, diagnosis::DiagnoseOptions& options) {
           },
           "baseline: arx (the paper's difference model, refined on its free-run error), linear "
           "(static in the inputs: inverse dynamics), or auto (the better one)")
-      ->check(CLI::IsMember({"auto", "arx", "linear"}))
-      ->default_str("auto");
-  verb.add_option("--order", options.order, "order of the difference model")
-      ->check(CLI::Range(1, 12));
+      .one_of({"auto", "arx", "linear"})
+      .default_str("auto");
+  verb.add_option("--order", options.order, "order of the difference model").between(1, 12);
   verb.add_option("--most-effects", options.search.most_effects,
                   "stop after this many effects; 0: the baseline alone")
-      ->check(CLI::Range(0, 8));
+      .between(0, 8);
   verb.add_option("--least-force", options.least_force_n,
                   "smallest RMS force of an effect that counts [N]; the default moves the cursor "
                   "by 0.8 mm. If the output has another unit, every effect counts")
-      ->check(settings::number_between(0.0, kMostForce_n));
+      .check(settings::number_between(0.0, kMostForce_n));
   measurement::add_heaviest_option(verb, options.heaviest_kg);
 }
 

@@ -7,15 +7,15 @@
 #include "apps/libraries/measurement/read_options.hpp"
 #include "services/core/diagnosis/diagnose.hpp"
 
-namespace CLI {
-class App;
+namespace stillhand::command_line {
+class Command;
 }
 
 namespace stillhand::diagnose {
 
 /// Adds what a verb diagnoses: REC..., --input, --output, --trial, and how files are read.
 /// @param recordings, read, options  keep what the user gives
-void add_recordings(CLI::App& verb, std::vector<std::string>& recordings,
+void add_recordings(command_line::Command& verb, std::vector<std::string>& recordings,
                     measurement::ReadOptions& read, diagnosis::DiagnoseOptions& options);
 
 /// Each of them, with the channels that the options name.
@@ -27,6 +27,6 @@ std::vector<diagnosis::Measurement> read_recordings(const std::vector<std::strin
 /// Adds the options that decide a verdict (--model, --order, --most-effects, --least-force) to a
 /// verb.  Every verb that diagnoses takes them from here, so that one file has one verdict.
 /// @param options  keeps what the user gives; as it comes it holds the defaults
-void add_diagnose_options(CLI::App& verb, diagnosis::DiagnoseOptions& options);
+void add_diagnose_options(command_line::Command& verb, diagnosis::DiagnoseOptions& options);
 
 }  // namespace stillhand::diagnose

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -25,6 +24,7 @@
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/remark.hpp"
 
 namespace stillhand::experiment {
@@ -45,11 +45,12 @@ struct Typed {
   bool incomplete = false;
 };
 
-CLI::App* subcommand(CLI::App& verb, const char* name, const char* help, Typed& typed) {
-  CLI::App* sub = verb.add_subcommand(name, help);
-  sub->add_option("DIR", typed.folder, "folder of the experiment")
-      ->required()
-      ->check(settings::check_name);
+command_line::Command subcommand(command_line::Command& verb, const char* name, const char* help,
+                                 Typed& typed) {
+  command_line::Command sub = verb.add_subcommand(name, help);
+  sub.add_option("DIR", typed.folder, "folder of the experiment")
+      .required()
+      .check(settings::check_name);
   return sub;
 }
 
@@ -142,84 +143,86 @@ void exclude(const Typed& typed) {
   journal.append({.kind = EntryKind::kExcluded, .text = typed.reason});
 }
 
-void add_new(CLI::App& verb, const std::shared_ptr<Typed>& typed) {
-  CLI::App* sub = subcommand(verb, "new", "Makes the folder and its experiment.yaml.", *typed);
+void add_new(command_line::Command& verb, const std::shared_ptr<Typed>& typed) {
+  command_line::Command sub =
+      subcommand(verb, "new", "Makes the folder and its experiment.yaml.", *typed);
   Design& design = typed->design;
-  sub->add_option("--title", design.title, "title");
-  sub->add_option("--conditions", typed->conditions,
-                  "comma-separated: " + session::known_conditions(session::kExperimentConditions));
-  sub->add_option("--participants", design.participants, "planned number");
-  sub->add_option("--order", typed->order, "orders of the trials")
-      ->type_name("{random,latin,williams}");
-  sub->add_option("--blocks", design.blocks, "blocks");
-  sub->add_option("--trials", design.trials, "trials of each condition in a block");
-  sub->add_option("--trial-seconds", design.trial_s, "length of a trial [s]");
-  sub->add_option("--identify-seconds", design.identify_s, "length of the pegged trial [s]");
-  sub->add_option("--operator", design.who, "who tracks")->type_name("{simulated,mouse,gamepad}");
-  sub->add_option("--control-model", typed->control_model,
-                  "model of condition C+, copied into the folder; `stillhand close-the-loop` and "
-                  "`stillhand control-model` write such a file. diagnosed: each session's own, in "
-                  "the pause behind its identification")
-      ->check(settings::check_name);
-  sub->add_option("--seed", typed->seed,
-                  "seed of the orders: the same seed gives the same orders [random]")
-      ->check(session::check_seed);
-  sub->callback([typed] { make(*typed); });
+  sub.add_option("--title", design.title, "title");
+  sub.add_option("--conditions", typed->conditions,
+                 "comma-separated: " + session::known_conditions(session::kExperimentConditions));
+  sub.add_option("--participants", design.participants, "planned number");
+  sub.add_option("--order", typed->order, "orders of the trials")
+      .type_name("{random,latin,williams}");
+  sub.add_option("--blocks", design.blocks, "blocks");
+  sub.add_option("--trials", design.trials, "trials of each condition in a block");
+  sub.add_option("--trial-seconds", design.trial_s, "length of a trial [s]");
+  sub.add_option("--identify-seconds", design.identify_s, "length of the pegged trial [s]");
+  sub.add_option("--operator", design.who, "who tracks").type_name("{simulated,mouse,gamepad}");
+  sub.add_option("--control-model", typed->control_model,
+                 "model of condition C+, copied into the folder; `stillhand close-the-loop` and "
+                 "`stillhand control-model` write such a file. diagnosed: each session's own, in "
+                 "the pause behind its identification")
+      .check(settings::check_name);
+  sub.add_option("--seed", typed->seed,
+                 "seed of the orders: the same seed gives the same orders [random]")
+      .check(session::check_seed);
+  sub.callback([typed] { make(*typed); });
 }
 
-void add_run(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
-  CLI::App* sub = subcommand(
+void add_run(command_line::Command& verb, const std::shared_ptr<Typed>& typed, int& status) {
+  command_line::Command sub = subcommand(
       verb, "run", "Conducts a participant's next session; continues where the last one ended.",
       *typed);
   lab::LabOptions& lab = typed->lab;
   lab::set_places(lab);
-  sub->add_option("--participant", typed->participant,
-                  "code such as P07 [the first participant who is not complete]");
-  sub->add_option(
-         "--plan", typed->plan,
-         "conduct the run of this plan.json of `stillhand plan-run` with --participant, in "
-         "place of the protocol: it is no step of it")
-      ->needs("--participant")
-      ->check(CLI::ExistingFile);
-  sub->add_option("--domain", lab.domain, "DDS domain, 0 to 232");
-  sub->add_option("--config", lab.config, "folder with the settings of each service");
-  sub->add_option("--match-seconds", lab.match_s,
-                  "longest wait until all processes have found each other [s]");
-  sub->add_option("--gamepad", lab.gamepad,
-                  "input device, for example /dev/input/event5, if the operator is gamepad")
-      ->check(settings::check_name);
-  sub->add_option("--stop-key", lab.stop_key,
-                  "input device, for example /dev/input/event3: each of its keys is an emergency "
-                  "stop")
-      ->check(settings::check_name);
-  sub->add_flag("--headless", lab.headless, "open no window");
-  sub->add_flag("--wait-for-start", lab.wait_for_start,
-                "each trial waits until a person presses Start on the dashboard");
-  sub->add_flag("--no-real-time", typed->ordinary, "do not ask for real-time scheduling");
-  recording::add_keep_options(*sub, lab.keep);
-  sub->callback([typed, &status] { status = run(*typed); });
+  sub.add_option("--participant", typed->participant,
+                 "code such as P07 [the first participant who is not complete]");
+  sub.add_option("--plan", typed->plan,
+                 "conduct the run of this plan.json of `stillhand plan-run` with --participant, in "
+                 "place of the protocol: it is no step of it")
+      .needs("--participant")
+      .existing_file();
+  sub.add_option("--domain", lab.domain, "DDS domain, 0 to 232");
+  sub.add_option("--config", lab.config, "folder with the settings of each service");
+  sub.add_option("--match-seconds", lab.match_s,
+                 "longest wait until all processes have found each other [s]");
+  sub.add_option("--gamepad", lab.gamepad,
+                 "input device, for example /dev/input/event5, if the operator is gamepad")
+      .check(settings::check_name);
+  sub.add_option("--stop-key", lab.stop_key,
+                 "input device, for example /dev/input/event3: each of its keys is an emergency "
+                 "stop")
+      .check(settings::check_name);
+  sub.add_flag("--headless", lab.headless, "open no window");
+  sub.add_flag("--wait-for-start", lab.wait_for_start,
+               "each trial waits until a person presses Start on the dashboard");
+  sub.add_flag("--no-real-time", typed->ordinary, "do not ask for real-time scheduling");
+  recording::add_keep_options(sub, lab.keep);
+  sub.callback([typed, &status] { status = run(*typed); });
 }
 
-void add_rest(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) {
-  CLI::App* shown = subcommand(verb, "status", "Shows how far each participant is.", *typed);
-  shown->callback([typed, &status] { status = show_status(*typed); });
-  CLI::App* excluded =
+void add_rest(command_line::Command& verb, const std::shared_ptr<Typed>& typed, int& status) {
+  command_line::Command shown =
+      subcommand(verb, "status", "Shows how far each participant is.", *typed);
+  shown.callback([typed, &status] { status = show_status(*typed); });
+  command_line::Command excluded =
       subcommand(verb, "exclude",
                  "Marks a participant as excluded, with the reason. Deletes nothing.", *typed);
-  excluded->add_option("--participant", typed->participant, "code such as P07")->required();
-  excluded->add_option("--reason", typed->reason, "why")->required()->check(settings::check_name);
-  excluded->callback([typed] { exclude(*typed); });
-  CLI::App* opened = subcommand(verb, "unblind",
-                                "Writes assignment.json: the condition of each label and trial. "
-                                "Refuses while a participant is not complete.",
-                                *typed);
-  opened->add_option("--reason", typed->reason, "why now")->required()->check(settings::check_name);
-  opened->add_option("--participant", typed->participant,
-                     "open this participant alone, for their safety; the others stay blinded");
-  opened->add_flag(
+  excluded.add_option("--participant", typed->participant, "code such as P07").required();
+  excluded.add_option("--reason", typed->reason, "why").required().check(settings::check_name);
+  excluded.callback([typed] { exclude(*typed); });
+  command_line::Command opened =
+      subcommand(verb, "unblind",
+                 "Writes assignment.json: the condition of each label and trial. "
+                 "Refuses while a participant is not complete.",
+                 *typed);
+  opened.add_option("--reason", typed->reason, "why now").required().check(settings::check_name);
+  opened.add_option("--participant", typed->participant,
+                    "open this participant alone, for their safety; the others stay blinded");
+  opened.add_flag(
       "--incomplete", typed->incomplete,
       "open all although a participant is not complete; you confirm with the folder's name");
-  opened->callback([typed] {
+  opened.callback([typed] {
     const std::string text = unblind(
         Folder(typed->folder), {typed->reason, typed->participant, typed->incomplete}, std::cin);
     std::fputs(text.c_str(), stdout);
@@ -231,19 +234,19 @@ void add_rest(CLI::App& verb, const std::shared_ptr<Typed>& typed, int& status) 
 
 }  // namespace
 
-void add_experiment_command(CLI::App& cli, int& status) {
+void add_experiment_command(command_line::Command& cli, int& status) {
   const auto typed = std::make_shared<Typed>();
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "experiment",
       "Conducts an experiment with participants: a folder with a pre-registration, a journal and\n"
       "recordings for each participant.\n"
       "Example: stillhand experiment new study1, then stillhand experiment run study1");
-  verb->require_subcommand(1);
-  add_new(*verb, typed);
-  add_run(*verb, typed, status);
-  add_rest(*verb, typed, status);
-  add_report_command(*verb, status);
-  add_export_command(*verb);
+  verb.require_subcommand();
+  add_new(verb, typed);
+  add_run(verb, typed, status);
+  add_rest(verb, typed, status);
+  add_report_command(verb, status);
+  add_export_command(verb);
 }
 
 }  // namespace stillhand::experiment

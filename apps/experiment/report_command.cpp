@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/experiment/report_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
@@ -10,6 +9,7 @@
 #include "apps/study/plan_options.hpp"
 #include "apps/study/study_runs.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -32,21 +32,21 @@ int report_on(ReportOptions& options) {
 
 }  // namespace
 
-void add_report_command(CLI::App& verb, int& status) {
+void add_report_command(command_line::Command& verb, int& status) {
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App* sub = verb.add_subcommand(
+  command_line::Command sub = verb.add_subcommand(
       "report",
       "Writes DIR/report: tables, figures and tests of an unblinded experiment, as\n"
       "`stillhand study --sessions DIR` computes them.");
-  sub->add_option("DIR", options->folder, "folder of the experiment")
-      ->required()
-      ->check(settings::check_name);
-  study::add_plan_options(*sub, options->record.plan_dz);
-  study::add_people_options(*sub, options->record);
-  sub->add_option("--threads", options->record.options.threads,
-                  "number of threads, 0: one per core; the results do not depend on it")
-      ->check(CLI::Range(0, 256));
-  sub->callback([options, &status] { status = report_on(*options); });
+  sub.add_option("DIR", options->folder, "folder of the experiment")
+      .required()
+      .check(settings::check_name);
+  study::add_plan_options(sub, options->record.plan_dz);
+  study::add_people_options(sub, options->record);
+  sub.add_option("--threads", options->record.options.threads,
+                 "number of threads, 0: one per core; the results do not depend on it")
+      .between(0, 256);
+  sub.callback([options, &status] { status = report_on(*options); });
 }
 
 }  // namespace stillhand::experiment

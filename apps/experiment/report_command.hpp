@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace CLI {
-class App;
+namespace stillhand::command_line {
+class Command;
 }
 
 namespace stillhand::experiment {
 
 /// Adds `stillhand experiment report`; parsing sets `status`.
-void add_report_command(CLI::App& verb, int& status);
+void add_report_command(command_line::Command& verb, int& status);
 
 }  // namespace stillhand::experiment

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/identify/identify_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "services/files/identification/model_file.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/check_number.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::identify {
 namespace {
@@ -93,9 +93,9 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_identify_command(CLI::App& cli, int& status) {
+void add_identify_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "identify",
       "Fits the paper's model to one recording: a difference model by least squares at 50 "
       "Hz.\nReports its frequency response next to the measured one, and its error on the quarter "
@@ -105,41 +105,40 @@ void add_identify_command(CLI::App& cli, int& status) {
       "or not at all.\nExamples: stillhand identify demo/session.mcap --save model.json --json "
       "out.json\n          stillhand identify ride.csv --map 'time=t [s]' 'acc=a_y [m/s^2]' "
       "'force=f [N]'");
-  verb->add_option("REC", arguments->recording, "recording")->required();
-  verb->add_option("--order", arguments->identify.config.order, "order of the model")
-      ->check(CLI::Range(1, 12));
-  verb->add_flag("--refine", arguments->identify.config.refine,
-                 "refine the fit on its free-run error (the model predicts from the input alone); "
-                 "the verb does "
-                 "so by itself if the fit is unstable");
-  verb->add_option("--input", arguments->identify.input, "input channel of the model");
-  verb->add_option("--output", arguments->identify.output, "output channel of the model");
-  verb->add_option(
+  verb.add_option("REC", arguments->recording, "recording").required();
+  verb.add_option("--order", arguments->identify.config.order, "order of the model").between(1, 12);
+  verb.add_flag("--refine", arguments->identify.config.refine,
+                "refine the fit on its free-run error (the model predicts from the input alone); "
+                "the verb does "
+                "so by itself if the fit is unstable");
+  verb.add_option("--input", arguments->identify.input, "input channel of the model");
+  verb.add_option("--output", arguments->identify.output, "output channel of the model");
+  verb.add_option(
       "--trial", arguments->read.trial,
       "trial of a session: number, or letter of its condition (I, A, B, C) [identification]");
-  measurement::add_read_options(*verb, arguments->read);
-  measurement::add_heaviest_option(*verb, arguments->identify.heaviest_kg);
-  verb->add_option("--save", arguments->save,
-                   "file for the model, in the form that cancellation reads")
-      ->check(settings::check_name);
-  verb->add_option("--json", arguments->json, "file for all results; - is standard output")
-      ->check(settings::check_name);
-  verb->add_flag(
+  measurement::add_read_options(verb, arguments->read);
+  measurement::add_heaviest_option(verb, arguments->identify.heaviest_kg);
+  verb.add_option("--save", arguments->save,
+                  "file for the model, in the form that cancellation reads")
+      .check(settings::check_name);
+  verb.add_option("--json", arguments->json, "file for all results; - is standard output")
+      .check(settings::check_name);
+  verb.add_flag(
       "--admittance", arguments->admittance,
       "for a session of `stillhand lab --identify admittance,feedthrough`: print admittance and "
       "feedthrough of the free stick with 95 % bands, and a physical model of the arm");
-  verb->add_option("--lever-m", arguments->lever_m,
-                   "with --admittance: distance from hand to pivot [m]")
-      ->check(settings::number_between(0.02, 0.5));
-  verb->add_option("--picture", arguments->picture, "with --admittance: PNG file for the responses")
-      ->check(settings::check_name);
-  verb->add_option(
+  verb.add_option("--lever-m", arguments->lever_m,
+                  "with --admittance: distance from hand to pivot [m]")
+      .check(settings::number_between(0.02, 0.5));
+  verb.add_option("--picture", arguments->picture, "with --admittance: PNG file for the responses")
+      .check(settings::check_name);
+  verb.add_option(
       "--held", arguments->held,
       "with --admittance: a session of `lab --held-stick`. With --swapped too, the verb tests that "
       "the feedthrough to position is the feedthrough to force times the admittance");
-  verb->add_option("--swapped", arguments->swapped,
-                   "with --admittance: a session of `lab --swap-lines`");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("--swapped", arguments->swapped,
+                  "with --admittance: a session of `lab --swap-lines`");
+  verb.callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::identify

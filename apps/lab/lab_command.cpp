@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
@@ -19,7 +18,7 @@
 #include "apps/lab/lab.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
-#include "services/files/settings/repeatable.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -103,13 +102,13 @@ void take_rig(const std::vector<std::string>& arguments, LabOptions& options) {
 }
 
 // The trials and the person or model that tracks.
-void add_trial_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
+void add_trial_options(command_line::Command& lab, LabOptions& options, LabArguments& arguments) {
   lab.add_option("--conditions", arguments.conditions,
                  "comma-separated: " + session::known_conditions(session::kLabConditions));
   lab.add_option("--arms", arguments.arms,
                  "for the condition scheduled: the person's arm, relaxed and holding; two files of "
                  "`stillhand identify --admittance --json`, comma-separated")
-      ->delimiter(',');
+      .delimiter(',');
   lab.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]");
   lab.add_option("--identify-seconds", options.protocol.identify_s,
                  "length of the pegged trial [s]; the paper's is 120");
@@ -117,48 +116,48 @@ void add_trial_options(CLI::App& lab, LabOptions& options, LabArguments& argumen
          "--identify", arguments.identify,
          "admittance,feedthrough: instead of the conditions, one trial in which motor and platform "
          "move the free stick together; `stillhand identify --admittance` evaluates it")
-      ->excludes(lab.get_option("--conditions"))
-      ->check(CLI::IsMember({"admittance,feedthrough"}));
+      .excludes(lab.get_option("--conditions"))
+      .one_of({"admittance,feedthrough"});
   lab.add_option("--plan", arguments.plan,
                  "instead of the conditions, the pegged trial alone in the motion that `stillhand "
                  "plan-run` planned: its plan.json")
-      ->excludes(lab.get_option("--conditions"))
-      ->excludes(lab.get_option("--identify"))
-      ->excludes(lab.get_option("--identify-seconds"))
-      ->check(settings::check_name);
+      .excludes(lab.get_option("--conditions"))
+      .excludes(lab.get_option("--identify"))
+      .excludes(lab.get_option("--identify-seconds"))
+      .check(settings::check_name);
   lab.add_option("--perturb-period-s", arguments.perturb_period_s,
                  "with --identify: period of both multisines [s]; the trial holds a whole number "
                  "of periods, five or more [20]");
   lab.add_option("--task", arguments.task, "with --identify: task of the simulated person [hold]")
-      ->check(CLI::IsMember({"hold", "relax", "give-way"}));
+      .one_of({"hold", "relax", "give-way"});
   lab.add_flag("--held-stick", arguments.held,
                "with --identify: the stick stays on its peg; for `identify --admittance --held`");
   lab.add_flag("--swap-lines", arguments.swapped,
                "with --identify: motor and platform exchange their frequencies; for `identify "
                "--admittance --swapped`");
   lab.add_option("--seed", options.protocol.seed, "seed of everything random")
-      ->check(session::check_seed);
+      .check(session::check_seed);
   lab.add_option("--operator", arguments.who,
                  "who tracks: a simulated subject, or a person's mouse or gamepad")
-      ->check(CLI::IsMember({"simulated", "mouse", "gamepad"}));
+      .one_of({"simulated", "mouse", "gamepad"});
   lab.add_option("--gamepad", options.gamepad,
                  "for --operator gamepad: input device such as /dev/input/event5")
-      ->check(settings::check_name);
+      .check(settings::check_name);
   lab.add_option("--subject", options.subject,
                  "number of the simulated subject that `stillhand study --seed` draws; 0: the one "
                  "in the settings")
-      ->check(CLI::Range(0, 10000));
+      .between(0, 10000);
   lab.add_flag("--wait-for-start", options.wait_for_start,
                "each trial waits until a person presses Start on the dashboard");
 }
 
-void add_motion_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
+void add_motion_options(command_line::Command& lab, LabOptions& options, LabArguments& arguments) {
   lab.add_option("--motion", arguments.motion,
                  "platform motion in B and C: noise (the paper's), road (ISO 8608), or ride")
-      ->check(CLI::IsMember({"noise", "road", "ride"}));
+      .one_of({"noise", "road", "ride"});
   lab.add_option("--ride", options.ride,
                  "recorded ride for --motion ride: CSV with a_y [m/s^2], or .mcap")
-      ->check(settings::check_name);
+      .check(settings::check_name);
   lab.add_option("--road-class", arguments.road_class,
                  "road for --motion road: ISO 8608 class, A (very good) to H [B]");
   lab.add_option("--speed-m-s", arguments.road_speed_m_s,
@@ -167,57 +166,58 @@ void add_motion_options(CLI::App& lab, LabOptions& options, LabArguments& argume
                  "in B and C the stick drives a vehicle that moves the platform: first_order, "
                  "second_order, excavator, wheelchair, aircraft_roll, or settings (vehicle.yaml of "
                  "--config); a growing oscillation ends the trial")
-      ->check(settings::check_name)
-      ->excludes(lab.get_option("--motion"));
-  CLI::Option* canceller = lab.add_option("--canceller", options.canceller,
-                                          "canceller of condition C: now (1 kHz), or paper (50 Hz, "
-                                          "after the paper's low-pass of 10 Hz, one sample late)");
-  canceller->check(CLI::IsMember({"now", "paper"}));
+      .check(settings::check_name)
+      .excludes(lab.get_option("--motion"));
+  command_line::Option canceller =
+      lab.add_option("--canceller", options.canceller,
+                     "canceller of condition C: now (1 kHz), or paper (50 Hz, "
+                     "after the paper's low-pass of 10 Hz, one sample late)");
+  canceller.one_of({"now", "paper"});
   lab.add_option("--model", options.model,
                  "control model for condition C, instead of the session's own; `stillhand "
                  "close-the-loop` and `stillhand control-model` write such a file")
-      ->excludes(canceller)
-      ->check(settings::check_name);
+      .excludes(canceller)
+      .check(settings::check_name);
   lab.add_option("--close", arguments.close,
                  "live: if the model no longer holds in the trial of C, the pause behind it "
                  "identifies and diagnoses again, and C runs again, as C+ if that leaves less and "
                  "the experimenter agrees")
-      ->check(CLI::IsMember({"live"}));
+      .one_of({"live"});
   lab.add_option("--undeclared-effect", options.undeclared_effect,
                  "seed of an effect that only the rig knows; it stays sealed until the results "
                  "are written; 0: no effect")
-      ->check(session::check_seed);
+      .check(session::check_seed);
 }
 
 // What the session writes and shows.
-void add_output_options(CLI::App& lab, LabOptions& options) {
+void add_output_options(command_line::Command& lab, LabOptions& options) {
   lab.add_option("--out", options.out,
                  "folder for the recording, the results and the logs; an earlier session stays in "
                  "OUT/earlier-1")
-      ->required();
+      .required();
   lab.add_flag("--headless", options.headless, "open no window");
   lab.add_flag("--video", options.video, "write the tracking screen to OUT/screen.avi");
   recording::add_keep_options(lab, options.keep);
 }
 
 // The machines, the bus and the services.
-void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments) {
-  CLI::Option* domain = lab.add_option("--domain", options.domain, "DDS domain, 0 to 232");
-  CLI::Option* inventory = lab.add_option(
+void add_bus_options(command_line::Command& lab, LabOptions& options, LabArguments& arguments) {
+  command_line::Option domain = lab.add_option("--domain", options.domain, "DDS domain, 0 to 232");
+  command_line::Option inventory = lab.add_option(
       "--inventory", options.inventory,
       "file with the lab's machines and the services of each, the same as for `stillhand "
       "deploy`; it names the domain and the keys");
-  inventory->excludes(domain)->check(settings::check_name);
+  inventory.excludes(domain).check(settings::check_name);
   lab.add_option("--security", options.security,
                  "folder with the certificate of each process and of this verb "
                  "(deploy/security/make.sh makes it); without: no security")
-      ->excludes(inventory)
-      ->check(settings::check_name);
-  settings::repeatable(
-      lab.add_option("--rig", arguments.rig,
-                     "the rig's parts: simulated; devices (those of devices.yaml in --config; run "
-                     "`stillhand calibrate` first); or another file like devices.yaml [simulated]. "
-                     "A number is the rig's number on the bus [1]. Both may be given"));
+      .excludes(inventory)
+      .check(settings::check_name);
+  lab.add_option("--rig", arguments.rig,
+                 "the rig's parts: simulated; devices (those of devices.yaml in --config; run "
+                 "`stillhand calibrate` first); or another file like devices.yaml [simulated]. "
+                 "A number is the rig's number on the bus [1]. Both may be given")
+      .repeatable();
   lab.add_option("--match-seconds", options.match_s,
                  "longest wait until all processes have found each other [s]");
   lab.add_option("--profiles", options.profiles, "file with the QoS profiles");
@@ -225,7 +225,7 @@ void add_bus_options(CLI::App& lab, LabOptions& options, LabArguments& arguments
   lab.add_flag("--attach", options.attach,
                "start no service: conduct the services that systemd started with --one-session, "
                "and fetch their recording")
-      ->excludes(lab.get_option("--canceller"));  // their settings say it
+      .excludes(lab.get_option("--canceller"));  // their settings say it
   lab.add_option("--stop-key", options.stop_key,
                  "input device, such as /dev/input/event3: each of its keys is an emergency stop, "
                  "and so is its loss");
@@ -262,29 +262,26 @@ void take_arguments(const LabArguments& arguments, LabOptions& options) {
 }
 
 // What is left is what people use first.
-void group_options(CLI::App& lab) {
-  settings::in_group(lab, "Motion and vehicle",
-                     {"--motion", "--ride", "--road-class", "--speed-m-s", "--vehicle"});
-  settings::in_group(lab, "Canceller and model",
-                     {"--canceller", "--model", "--arms", "--close", "--undeclared-effect"});
-  settings::in_group(lab, "Trials",
-                     {"--identify-seconds", "--subject", "--gamepad", "--wait-for-start", "--video",
-                      "--match-seconds", "--stop-key"});
-  settings::in_group(
-      lab, "Identification of arm and feedthrough at once",
-      {"--identify", "--perturb-period-s", "--task", "--held-stick", "--swap-lines"});
-  settings::in_group(lab, "Machines and bus",
-                     {"--domain", "--inventory", "--security", "--profiles", "--attach",
-                      "--no-real-time", "--trace-switches"});
+void group_options(command_line::Command& lab) {
+  lab.group("Motion and vehicle",
+            {"--motion", "--ride", "--road-class", "--speed-m-s", "--vehicle"});
+  lab.group("Canceller and model",
+            {"--canceller", "--model", "--arms", "--close", "--undeclared-effect"});
+  lab.group("Trials", {"--identify-seconds", "--subject", "--gamepad", "--wait-for-start",
+                       "--video", "--match-seconds", "--stop-key"});
+  lab.group("Identification of arm and feedthrough at once",
+            {"--identify", "--perturb-period-s", "--task", "--held-stick", "--swap-lines"});
+  lab.group("Machines and bus", {"--domain", "--inventory", "--security", "--profiles", "--attach",
+                                 "--no-real-time", "--trace-switches"});
 }
 
 }  // namespace
 
-void add_lab_command(CLI::App& cli, int& status) {
+void add_lab_command(command_line::Command& cli, int& status) {
   auto options = std::make_shared<LabOptions>();
   auto arguments = std::make_shared<LabArguments>();
   set_places(*options);
-  CLI::App* lab = cli.add_subcommand(
+  command_line::Command lab = cli.add_subcommand(
       "lab",
       "Runs a whole session, on this machine or on the machines of an inventory. The verb starts\n"
       "every process and identifies the feedthrough with the stick fixed. Then it runs one\n"
@@ -293,12 +290,12 @@ void add_lab_command(CLI::App& cli, int& status) {
       "computes the results from the recording.\n"
       "Example: stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out "
       "run1");
-  add_trial_options(*lab, *options, *arguments);
-  add_motion_options(*lab, *options, *arguments);
-  add_output_options(*lab, *options);
-  add_bus_options(*lab, *options, *arguments);
-  group_options(*lab);
-  lab->callback([options, arguments, &status] {
+  add_trial_options(lab, *options, *arguments);
+  add_motion_options(lab, *options, *arguments);
+  add_output_options(lab, *options);
+  add_bus_options(lab, *options, *arguments);
+  group_options(lab);
+  lab.callback([options, arguments, &status] {
     take_arguments(*arguments, *options);
     runtime::Stop stop;
     status = run_lab(*options, stop);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -22,6 +21,7 @@
 #include "apps/libraries/session/session_recording.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_number.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/remark.hpp"
 
 namespace stillhand::misses {
@@ -125,23 +125,22 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_misses_command(CLI::App& cli, int& status) {
+void add_misses_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "misses",
       "Lists the processes that were late in a recorded session: which process, when, for how "
       "long,\nwhich other processes waited for it, and what the motor force did.\nExample: "
       "stillhand misses run1/session.mcap --picture late.svg");
-  verb->add_option("FILE", arguments->recording, "recording of a session (MCAP)")->required();
-  verb->add_option("--least-ms", arguments->least_ms, "shortest lateness that is listed [ms]")
-      ->check(settings::number_between(1.0, 1e4));
-  verb->add_flag("--why", arguments->why,
-                 "also what the kernel knows: no processor, a signal, work, memory from a disk");
-  verb->add_option("--json", arguments->json, "write the same as JSON to this file");
-  verb->add_option(
-      "--picture", arguments->picture,
-      "SVG file: the motor force around the longest lateness in which the motor acted");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("FILE", arguments->recording, "recording of a session (MCAP)").required();
+  verb.add_option("--least-ms", arguments->least_ms, "shortest lateness that is listed [ms]")
+      .check(settings::number_between(1.0, 1e4));
+  verb.add_flag("--why", arguments->why,
+                "also what the kernel knows: no processor, a signal, work, memory from a disk");
+  verb.add_option("--json", arguments->json, "write the same as JSON to this file");
+  verb.add_option("--picture", arguments->picture,
+                  "SVG file: the motor force around the longest lateness in which the motor acted");
+  verb.callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::misses

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -29,6 +28,7 @@
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/check_number.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/run_jobs.hpp"
 #include "services/system/process/shipped.hpp"
 #include "services/system/process/stop.hpp"
@@ -142,25 +142,25 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_plan_run_command(CLI::App& cli, int& status) {
+void add_plan_run_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "plan-run",
       "Plans the run that settles a tie. Diagnoses the recording, takes the causes that "
       "explain\nit about equally well, and looks for the motion, within the platform's limits, on "
       "which their\npredictions differ most for the noise of the recording. It states the "
       "probability that the run\nbreaks the tie.\nREC: as for `stillhand diagnose`.\nExample: "
       "stillhand plan-run run1/session.mcap --seconds 30 --out next");
-  diagnose::add_recordings(*verb, arguments->recordings, arguments->read, arguments->options);
-  verb->add_option("--seconds", arguments->seconds, "length of the run [s]")
-      ->check(settings::number_between(next_run::kShortest_s, next_run::kLongest_s));
-  verb->add_option("--out", arguments->out, "folder for ride.csv, plan.json and plan.svg")
-      ->required()
-      ->check(settings::check_name);
-  verb->add_option("--config", arguments->config,
-                   "folder with the settings of each service; motion.yaml holds the platform's "
-                   "limits");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  diagnose::add_recordings(verb, arguments->recordings, arguments->read, arguments->options);
+  verb.add_option("--seconds", arguments->seconds, "length of the run [s]")
+      .check(settings::number_between(next_run::kShortest_s, next_run::kLongest_s));
+  verb.add_option("--out", arguments->out, "folder for ride.csv, plan.json and plan.svg")
+      .required()
+      .check(settings::check_name);
+  verb.add_option("--config", arguments->config,
+                  "folder with the settings of each service; motion.yaml holds the platform's "
+                  "limits");
+  verb.callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::plan_run

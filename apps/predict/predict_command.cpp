@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/predict/predict_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -20,6 +19,7 @@
 #include "services/files/digest/content_digest.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::predict {
 namespace {
@@ -110,9 +110,9 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_predict_command(CLI::App& cli, int& status) {
+void add_predict_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "predict",
       "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\nIf "
       "the recording holds the output too, the verb prints RMSE, VAF (the share of the variance\n"
@@ -122,31 +122,31 @@ void add_predict_command(CLI::App& cli, int& status) {
       "range\nthat was seen, an effect keeps its value. A note reports each case.\nExample: "
       "stillhand "
       "predict model.json ride.csv --out prediction.csv");
-  verb->add_option("MODEL", arguments->model, "model file")->required();
-  verb->add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
-      ->required();
-  verb->add_option("--trial", arguments->read.trial,
-                   "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(*verb, arguments->read);
-  verb->add_option("--out", arguments->out,
-                   "CSV file of the prediction, with the measured output if REC has it")
-      ->required()
-      ->check(settings::check_name);
-  verb->add_option("--start-from-output", arguments->start_samples,
-                   "rows at the start of REC whose measured output gives the model's state there; "
-                   "the scores leave them out [0: the state comes from the inputs]")
-      ->default_str("")
-      ->check(CLI::Range(0, 1000000));
-  verb->add_option(
+  verb.add_option("MODEL", arguments->model, "model file").required();
+  verb.add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
+      .required();
+  verb.add_option("--trial", arguments->read.trial,
+                  "trial of a session's recording: its number, or the letter of its condition");
+  measurement::add_read_options(verb, arguments->read);
+  verb.add_option("--out", arguments->out,
+                  "CSV file of the prediction, with the measured output if REC has it")
+      .required()
+      .check(settings::check_name);
+  verb.add_option("--start-from-output", arguments->start_samples,
+                  "rows at the start of REC whose measured output gives the model's state there; "
+                  "the scores leave them out [0: the state comes from the inputs]")
+      .default_str("")
+      .between(0, 1000000);
+  verb.add_option(
           "--json", arguments->json,
           "file for RMSE, VAF and fit of the model, without and with effects; - is standard "
           "output, and the text then goes to standard error")
-      ->check(settings::check_name);
-  verb->add_option("--picture", arguments->picture,
-                   "PNG or SVG file: an excerpt of the measured output, both predictions and their "
-                   "residuals")
-      ->check(settings::check_name);
-  verb->callback([arguments, &status] { status = run(*arguments); });
+      .check(settings::check_name);
+  verb.add_option("--picture", arguments->picture,
+                  "PNG or SVG file: an excerpt of the measured output, both predictions and their "
+                  "residuals")
+      .check(settings::check_name);
+  verb.callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::predict

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/record/record_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 
@@ -10,7 +9,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/check_number.hpp"
-#include "services/files/settings/repeatable.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/clock.hpp"
 #include "services/system/process/real_time.hpp"
 #include "services/system/process/shipped.hpp"
@@ -59,11 +58,11 @@ int run(Arguments arguments) {
 
 }  // namespace
 
-void add_record_command(CLI::App& cli, int& status) {
+void add_record_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
   RecordOptions& options = arguments->options;
   options.profiles = runtime::shipped("qos/profiles.xml");
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "record",
       "Records a running bus into an MCAP file. The verb is outside of every session: no\n"
       "session waits for it or ends with it. It records every topic of any DDS program, unless\n"
@@ -72,50 +71,52 @@ void add_record_command(CLI::App& cli, int& status) {
       "with Ctrl-C or after --duration, and prints for each topic how many messages it received,\n"
       "lost and wrote. Exit status 1 when a message was lost.\n"
       "Example: stillhand record --out run.mcap --topics 'stillhand/*' --block '*status'");
-  verb->add_option("--out", arguments->out, "MCAP file to write; it must not exist yet");
-  settings::repeatable(verb->add_option("--topics", options.topics.allow,
-                                        "pattern of topics to record; may be repeated"));
-  settings::repeatable(verb->add_option("--block", options.topics.block,
-                                        "pattern of topics not to record; may be repeated"));
-  settings::repeatable(verb->add_option(
-      "--require", options.required,
-      "required topic: a warning in red when it is silent before a trial starts, and exit "
-      "status 1 when it is silent at the end; may be repeated"));
-  settings::repeatable(verb->add_option(
-      "--idl", options.idl, "IDL file with types that the bus does not describe; may be repeated"));
-  verb->add_option("--duration", arguments->duration_s, "end after this time [s]")
-      ->default_str("")
-      ->check(settings::number_between(0.001, kMostSeconds));
-  verb->add_option("--rotate-s", arguments->rotate_s, "continue in a new file after this time [s]")
-      ->default_str("")
-      ->check(settings::number_between(0.1, kMostSeconds));
-  verb->add_option("--rotate-mb", arguments->rotate_mb,
-                   "continue in a new file after this size [MB]")
-      ->default_str("")
-      ->check(settings::number_between(0.1, kMostMb));
-  verb->add_option("--window", arguments->window_s,
-                   "event window: keep the last seconds in memory and write them at a trigger [s]")
-      ->default_str("")
-      ->check(settings::number_between(0.1, 3600.0));
-  settings::repeatable(
-      verb->add_option("--trigger", options.triggers,
-                       "write the window when a field crosses a threshold: TOPIC.FIELD>VALUE or "
-                       "TOPIC.FIELD<VALUE, |FIELD| for its magnitude; may be repeated"));
-  verb->add_flag("--trigger-on-deadline", options.trigger_on_deadline,
-                 "write the window when a process reports a missed deadline");
-  recording::add_keep_options(*verb, arguments->keep);
-  verb->add_option("--remote", arguments->remote,
-                   "do not record; send this to the recorders of the domain")
-      ->type_name("{pause,resume,trigger,stop}");
-  verb->add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
-  verb->add_option("--domain", options.domain, "DDS domain, 0 to 232");
-  verb->add_option("--profiles", options.profiles, "QoS profiles");
-  verb->add_option(
-          "--security", options.security,
-          "folder of certificates (deploy/security/make.sh); the verb uses that of the tap "
-          "[no security]")
-      ->check(settings::check_name);
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("--out", arguments->out, "MCAP file to write; it must not exist yet");
+  verb.add_option("--topics", options.topics.allow, "pattern of topics to record; may be repeated")
+      .repeatable();
+  verb.add_option("--block", options.topics.block,
+                  "pattern of topics not to record; may be repeated")
+      .repeatable();
+  verb.add_option(
+          "--require", options.required,
+          "required topic: a warning in red when it is silent before a trial starts, and exit "
+          "status 1 when it is silent at the end; may be repeated")
+      .repeatable();
+  verb.add_option("--idl", options.idl,
+                  "IDL file with types that the bus does not describe; may be repeated")
+      .repeatable();
+  verb.add_option("--duration", arguments->duration_s, "end after this time [s]")
+      .default_str("")
+      .check(settings::number_between(0.001, kMostSeconds));
+  verb.add_option("--rotate-s", arguments->rotate_s, "continue in a new file after this time [s]")
+      .default_str("")
+      .check(settings::number_between(0.1, kMostSeconds));
+  verb.add_option("--rotate-mb", arguments->rotate_mb,
+                  "continue in a new file after this size [MB]")
+      .default_str("")
+      .check(settings::number_between(0.1, kMostMb));
+  verb.add_option("--window", arguments->window_s,
+                  "event window: keep the last seconds in memory and write them at a trigger [s]")
+      .default_str("")
+      .check(settings::number_between(0.1, 3600.0));
+  verb.add_option("--trigger", options.triggers,
+                  "write the window when a field crosses a threshold: TOPIC.FIELD>VALUE or "
+                  "TOPIC.FIELD<VALUE, |FIELD| for its magnitude; may be repeated")
+      .repeatable();
+  verb.add_flag("--trigger-on-deadline", options.trigger_on_deadline,
+                "write the window when a process reports a missed deadline");
+  recording::add_keep_options(verb, arguments->keep);
+  verb.add_option("--remote", arguments->remote,
+                  "do not record; send this to the recorders of the domain")
+      .type_name("{pause,resume,trigger,stop}");
+  verb.add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
+  verb.add_option("--domain", options.domain, "DDS domain, 0 to 232");
+  verb.add_option("--profiles", options.profiles, "QoS profiles");
+  verb.add_option("--security", options.security,
+                  "folder of certificates (deploy/security/make.sh); the verb uses that of the tap "
+                  "[no security]")
+      .check(settings::check_name);
+  verb.callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::record

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -23,6 +22,7 @@
 #include "services/core/recording/mcap/compression.hpp"
 #include "services/core/recording/mcap/mcap_loss.hpp"
 #include "services/files/recording/file_io.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/remark.hpp"
 #include "services/system/process/stop.hpp"
 
@@ -30,10 +30,10 @@ namespace stillhand::recordings {
 namespace {
 
 // A verb about one recording, which it names first.
-CLI::App* file_verb(CLI::App& cli, std::string& recording, const std::string& name,
-                    const std::string& description) {
-  CLI::App* verb = cli.add_subcommand(name, description);
-  verb->add_option("FILE", recording, "recording (MCAP)")->required();
+command_line::Command file_verb(command_line::Command& cli, std::string& recording,
+                                const std::string& name, const std::string& description) {
+  command_line::Command verb = cli.add_subcommand(name, description);
+  verb.add_option("FILE", recording, "recording (MCAP)").required();
   return verb;
 }
 
@@ -63,16 +63,16 @@ int run_info(const InfoArguments& arguments) {
   return 0;
 }
 
-void add_info(CLI::App& cli, int& status) {
+void add_info(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* verb =
+  command_line::Command verb =
       file_verb(cli, arguments->recording, "info",
                 "Prints what a recording holds: topics, types, messages, rates, lost ticks, "
                 "QoS,\nmetadata, damage. Reads the whole file and checks every checksum. If a "
                 "crash left the file\nopen, the verb reads what is there and prints what is "
                 "lost.\nExample: stillhand info demo/session.mcap --json info.json");
-  verb->add_option("--json", arguments->json, "write the same as JSON to this file");
-  verb->callback([arguments, &status] { status = run_info(*arguments); });
+  verb.add_option("--json", arguments->json, "write the same as JSON to this file");
+  verb.callback([arguments, &status] { status = run_info(*arguments); });
 }
 
 int run_verify(const std::string& path) {
@@ -92,14 +92,14 @@ int run_verify(const std::string& path) {
   return 1;
 }
 
-void add_verify(CLI::App& cli, int& status) {
+void add_verify(command_line::Command& cli, int& status) {
   auto path = std::make_shared<std::string>();
-  CLI::App* verb = file_verb(
+  command_line::Command verb = file_verb(
       cli, *path, "verify",
       "Reads the whole recording, checks every checksum and lists each finding with its place.\n"
       "Exit status 1 when the file is damaged, cut off or still being written.\n"
       "Example: stillhand verify demo/session.mcap");
-  verb->callback([path, &status] { status = run_verify(*path); });
+  verb.callback([path, &status] { status = run_verify(*path); });
 }
 
 struct RecoverArguments {
@@ -129,20 +129,20 @@ int run_recover(RecoverArguments arguments) {
   return 0;
 }
 
-void add_recover(CLI::App& cli, int& status) {
+void add_recover(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<RecoverArguments>();
-  CLI::App* verb =
+  command_line::Command verb =
       file_verb(cli, arguments->recording, "recover",
                 "Copies what is readable in a cut-off or damaged recording into a new file, and "
                 "prints\nwhat is lost. With --out the old file stays as it is. Without --out the "
                 "new file takes\nthe name of the old one, which is kept as FILE.damaged. The new "
                 "file appears when it is\ncomplete and on the disk. If the recording is whole, "
                 "nothing is written.\nExample: stillhand recover crashed.mcap --out whole.mcap");
-  verb->add_option("--out", arguments->options.out, "file to write; it must not exist yet");
-  verb->add_option("--compression", arguments->compression,
-                   "compression of the chunks: zstd, lz4 or none")
-      ->check(CLI::IsMember({"zstd", "lz4", "none"}));
-  verb->callback([arguments, &status] { status = run_recover(*arguments); });
+  verb.add_option("--out", arguments->options.out, "file to write; it must not exist yet");
+  verb.add_option("--compression", arguments->compression,
+                  "compression of the chunks: zstd, lz4 or none")
+      .one_of({"zstd", "lz4", "none"});
+  verb.callback([arguments, &status] { status = run_recover(*arguments); });
 }
 
 struct ExportArguments {
@@ -218,33 +218,33 @@ int run_export(const ExportArguments& arguments) {
   return arguments.options.lateness.empty() ? 0 : run_lateness(arguments);
 }
 
-void add_export(CLI::App& cli, int& status) {
+void add_export(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* verb = file_verb(
+  command_line::Command verb = file_verb(
       cli, arguments->recording, "export",
       "Writes a recording as tables, one for each topic: a folder of CSV files, a MATLAB file\n"
       "(version 5), an HDF5 file, or all three. The first column is `t [s]` since the\n"
       "recording's start; units come from the IDL that the recording carries. Any recording in\n"
       "CDR with its IDL as schema can be exported.\n"
       "Example: stillhand export demo/session.mcap --csv tables --hdf5 session.h5");
-  verb->add_option("--csv", arguments->options.csv, "folder for CSV files, one for each topic");
-  verb->add_option("--mat", arguments->options.mat, "MATLAB file, one struct for each topic");
-  verb->add_option("--hdf5", arguments->options.hdf5, "HDF5 file, one group for each topic");
-  verb->add_option("--ros2bag", arguments->ros2bag,
-                   "MCAP file with messages of ROS 2 (sensor_msgs/Imu and so on), of a session");
-  verb->add_option("--lateness", arguments->options.lateness,
-                   "CSV file with what came late in each tick of a session: age of the answers, "
-                   "lost ticks, ...");
-  verb->add_option("--topics", arguments->options.topics,
-                   "names or patterns with * and ?, comma-separated [every topic]")
-      ->delimiter(',')
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->callback([arguments, &status] { status = run_export(*arguments); });
+  verb.add_option("--csv", arguments->options.csv, "folder for CSV files, one for each topic");
+  verb.add_option("--mat", arguments->options.mat, "MATLAB file, one struct for each topic");
+  verb.add_option("--hdf5", arguments->options.hdf5, "HDF5 file, one group for each topic");
+  verb.add_option("--ros2bag", arguments->ros2bag,
+                  "MCAP file with messages of ROS 2 (sensor_msgs/Imu and so on), of a session");
+  verb.add_option("--lateness", arguments->options.lateness,
+                  "CSV file with what came late in each tick of a session: age of the answers, "
+                  "lost ticks, ...");
+  verb.add_option("--topics", arguments->options.topics,
+                  "names or patterns with * and ?, comma-separated [every topic]")
+      .delimiter(',')
+      .takes_all();
+  verb.callback([arguments, &status] { status = run_export(*arguments); });
 }
 
 }  // namespace
 
-void add_file_commands(CLI::App& cli, int& status) {
+void add_file_commands(command_line::Command& cli, int& status) {
   add_info(cli, status);
   add_verify(cli, status);
   add_recover(cli, status);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace CLI {
-class App;
+namespace stillhand::command_line {
+class Command;
 }
 
 namespace stillhand::recordings {
 
 /// Adds the verbs that look at files: `info`, `verify`, `recover`, `export`; `status` is the exit
 /// status after parsing.
-void add_file_commands(CLI::App& cli, int& status);
+void add_file_commands(command_line::Command& cli, int& status);
 
 }  // namespace stillhand::recordings

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/replay/replay_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 
 #include "apps/replay/replay.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_number.hpp"
-#include "services/files/settings/repeatable.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/clock.hpp"
 #include "services/system/process/real_time.hpp"
 #include "services/system/process/shipped.hpp"
@@ -57,11 +56,11 @@ int run(Arguments arguments) {
 
 }  // namespace
 
-void add_replay_command(CLI::App& cli, int& status) {
+void add_replay_command(command_line::Command& cli, int& status) {
   auto arguments = std::make_shared<Arguments>();
   ReplayOptions& options = arguments->options;
   options.profiles = runtime::shipped("qos/profiles.xml");
-  CLI::App* verb = cli.add_subcommand(
+  command_line::Command verb = cli.add_subcommand(
       "replay",
       "Plays a recording onto the bus, byte for byte, with the recorded QoS. Every message\n"
       "carries the replay's mark: processes of a session drop it, and no rig on the domain\n"
@@ -70,38 +69,38 @@ void add_replay_command(CLI::App& cli, int& status) {
       "Keys: space pause; left and right 5 s back and forward; s next message; + and - rate; a\n"
       "loop start, b loop end, c loop off; q quit.\n"
       "Example: stillhand replay run/session.mcap --domain 7 --topics stillhand/sensed --rate 0.5");
-  verb->add_option("REC", options.file, "MCAP recording");
-  verb->add_option("--rate", arguments->rate, "speed relative to the recording, 0.1 to 100");
-  settings::repeatable(verb->add_option(
-      "--topics", options.topics.allow,
-      "pattern of topics to play (* any run of characters, ? one); may be repeated"));
-  settings::repeatable(verb->add_option("--block", options.topics.block,
-                                        "pattern of topics not to play; may be repeated"));
-  settings::repeatable(
-      verb->add_option("--remap", arguments->remap,
-                       "RECORDED=WRITTEN: write a topic under another name; may be repeated"));
-  verb->add_option("--start", arguments->start_s,
-                   "begin at this time [s] after the recording's start")
-      ->default_str("")
-      ->check(settings::number_between(0.0, kMostSeconds));
-  verb->add_option("--end", arguments->end_s, "end at this time [s] after the recording's start")
-      ->default_str("")
-      ->check(settings::number_between(0.0, kMostSeconds));
-  verb->add_flag("--loop", options.loop, "play again from the start when the end is reached");
-  verb->add_flag("--paused", options.begin_paused, "begin paused");
-  settings::repeatable(
-      verb->add_option("--wait-for", options.wait_for,
-                       "topic that must have a reader before the replay begins; may be repeated"));
-  verb->add_option("--wait-seconds", arguments->wait_s, "longest wait of --wait-for [s]")
-      ->check(settings::number_between(0.0, kMostSeconds));
-  verb->add_option("--remote", arguments->remote,
-                   "do not play; send this to the replay of the domain; or \"seek S\", \"rate R\", "
-                   "\"loop S S\"")
-      ->type_name("{play,pause,step,stop,loop-off}");
-  verb->add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
-  verb->add_option("--domain", options.domain, "DDS domain, 0 to 232");
-  verb->add_option("--profiles", options.profiles, "QoS profiles");
-  verb->callback([arguments, &status] { status = run(*arguments); });
+  verb.add_option("REC", options.file, "MCAP recording");
+  verb.add_option("--rate", arguments->rate, "speed relative to the recording, 0.1 to 100");
+  verb.add_option("--topics", options.topics.allow,
+                  "pattern of topics to play (* any run of characters, ? one); may be repeated")
+      .repeatable();
+  verb.add_option("--block", options.topics.block, "pattern of topics not to play; may be repeated")
+      .repeatable();
+  verb.add_option("--remap", arguments->remap,
+                  "RECORDED=WRITTEN: write a topic under another name; may be repeated")
+      .repeatable();
+  verb.add_option("--start", arguments->start_s,
+                  "begin at this time [s] after the recording's start")
+      .default_str("")
+      .check(settings::number_between(0.0, kMostSeconds));
+  verb.add_option("--end", arguments->end_s, "end at this time [s] after the recording's start")
+      .default_str("")
+      .check(settings::number_between(0.0, kMostSeconds));
+  verb.add_flag("--loop", options.loop, "play again from the start when the end is reached");
+  verb.add_flag("--paused", options.begin_paused, "begin paused");
+  verb.add_option("--wait-for", options.wait_for,
+                  "topic that must have a reader before the replay begins; may be repeated")
+      .repeatable();
+  verb.add_option("--wait-seconds", arguments->wait_s, "longest wait of --wait-for [s]")
+      .check(settings::number_between(0.0, kMostSeconds));
+  verb.add_option("--remote", arguments->remote,
+                  "do not play; send this to the replay of the domain; or \"seek S\", \"rate R\", "
+                  "\"loop S S\"")
+      .type_name("{play,pause,step,stop,loop-off}");
+  verb.add_flag("--no-real-time", arguments->ordinary, "do not ask for real-time priority");
+  verb.add_option("--domain", options.domain, "DDS domain, 0 to 232");
+  verb.add_option("--profiles", options.profiles, "QoS profiles");
+  verb.callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace stillhand::replay

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/stillhand/help.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -180,11 +181,11 @@ void set(CLI::App& app, const std::shared_ptr<Help>& help) {
 
 }  // namespace
 
-void add_help(CLI::App& cli) {
+void add_help(command_line::Program& cli) {
   const auto help = std::make_shared<Help>();
   help->column_width(kIndent);
-  set(cli, help);
-  for (const CLI::App* verb : cli.get_subcommands({})) {
+  set(cli.app(), help);
+  for (const CLI::App* verb : cli.app().get_subcommands({})) {
     if (!is_known(verb->get_name())) throw std::logic_error("no overview of " + verb->get_name());
   }
 }
@@ -207,14 +208,14 @@ std::string misspelt_verb(const std::vector<std::string>& words) {
          "; `stillhand help` explains each";
 }
 
-std::string usage_error(const CLI::App& cli, const std::string& what) {
-  const CLI::App* verb = &cli;
+std::string usage_error(const command_line::Program& cli, const std::string& what) {
+  const CLI::App* verb = &cli.app();
   std::string name = "stillhand";
   while (!verb->get_subcommands().empty()) {
     verb = verb->get_subcommands().front();
     name += " " + verb->get_name();
   }
-  const std::vector<std::string> words = cli.remaining(true);
+  const std::vector<std::string> words = cli.app().remaining(true);
   const auto own = verb->get_subcommands({});
   const auto word = std::ranges::find_if(
       words, [&](const std::string& each) { return !own.empty() || each.starts_with("--"); });

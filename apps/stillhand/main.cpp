@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -31,6 +29,7 @@
 #include "apps/study/study_command.hpp"
 #include "apps/vehicle/vehicle_command.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/remark.hpp"
 #include "version.hpp"
 
@@ -49,13 +48,13 @@ int flushed(int status) {
 int run(int argc, char** argv) {
   std::signal(SIGXFSZ,
               SIG_IGN);  // a write beyond the limit of a file's size then fails like others
-  CLI::App cli("Stillhand measures, models and cancels biodynamic feedthrough.");
+  stillhand::command_line::Program cli(
+      "Stillhand measures, models and cancels biodynamic feedthrough.");
   cli.name("stillhand");
-  cli.set_version_flag("--version", stillhand::kVersion);
-  cli.require_subcommand(1);
-  // A script gives its defaults first and the user's words after them: the last word counts.
-  cli.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  cli.option_defaults()->always_capture_default();  // --help shows it
+  cli.version(stillhand::kVersion);
+  cli.require_subcommand();
+  // A script gives its defaults first and the user's words after them.
+  cli.last_word_counts();
   int status = 0;
   try {
     stillhand::lab::add_lab_command(cli, status);
@@ -88,11 +87,10 @@ int run(int argc, char** argv) {
       std::cerr << "stillhand: " << why << '\n';
       return 2;
     }
-    std::ranges::reverse(words);  // as CLI11 takes them
     cli.parse(std::move(words));
     return flushed(status);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return flushed(cli.exit(error));  // --help, --version
+  } catch (const stillhand::command_line::UsageError& error) {
+    if (error.status() == 0) return flushed(error.print());  // --help, --version
     std::cerr << stillhand::usage_error(cli, error.what()) << '\n';
     return 2;
   } catch (const stillhand::ConfigError& error) {

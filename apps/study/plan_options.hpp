@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-namespace CLI {
-class App;
+namespace stillhand::command_line {
+class Command;
 }
 
 namespace stillhand::study {
@@ -13,9 +13,9 @@ namespace stillhand::study {
 struct StudyRecord;
 
 /// Adds --plan and --plan-effect; parsing sets `effects_dz` (StudyRecord::plan_dz).
-void add_plan_options(CLI::App& cli, std::optional<std::vector<double>>& effects_dz);
+void add_plan_options(command_line::Command& cli, std::optional<std::vector<double>>& effects_dz);
 
 /// Adds --diagnose and --simulated, for recorded people.
-void add_people_options(CLI::App& cli, StudyRecord& record);
+void add_people_options(command_line::Command& cli, StudyRecord& record);
 
 }  // namespace stillhand::study

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/bus/service.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -19,6 +18,7 @@
 #include "services/bus/trial_codec.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/real_time.hpp"
 
 namespace stillhand::runtime {
@@ -185,22 +185,21 @@ void Service::run(const std::function<void()>& loop) {
 
 int run_service(const std::string& name, int argc, char** argv,
                 const std::function<void(Service&)>& body,
-                const std::function<void(CLI::App&, ServiceOptions&)>& more_options) {
+                const std::function<void(command_line::Command&, ServiceOptions&)>& more_options) {
   ServiceOptions options;
   options.service = name;
-  CLI::App cli("stillhand-" + name +
-               ": one process of a session; `stillhand lab` starts all of them");
+  command_line::Program cli("stillhand-" + name +
+                            ": one process of a session; `stillhand lab` starts all of them");
   std::optional<pid_t> parent;
   cli.add_option("--domain", options.domain, "DDS domain, 0 to 232");
   cli.add_option("--rig", options.rig, "number of the rig on the bus");
   cli.add_option("--seed", options.seed, "seed of all randomness in this process");
-  cli.add_option("--profiles", options.profiles, "QoS profiles (qos/profiles.xml)")->required();
-  cli.add_option("--config", options.config, "folder with the settings of each service")
-      ->required();
+  cli.add_option("--profiles", options.profiles, "QoS profiles (qos/profiles.xml)").required();
+  cli.add_option("--config", options.config, "folder with the settings of each service").required();
   cli.add_option("--out", options.out, "folder or file this process may write");
   cli.add_option("--security", options.security,
                  "folder of certificates (deploy/security/make.sh) [no security]")
-      ->check(settings::check_name);
+      .check(settings::check_name);
   cli.add_flag("--real-time", options.real_time,
                "request real-time priority: SCHED_FIFO, with --security SCHED_RR");
   cli.add_flag("--trace-switches", options.traces_switches,
@@ -213,11 +212,7 @@ int run_service(const std::string& name, int argc, char** argv,
                  "session's sources or announces a trial [any, the first one]");
   cli.add_option("--end-with-parent", parent, "stop when this process, which starts it, ends");
   if (more_options) more_options(cli, options);
-  try {
-    cli.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return cli.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto status = cli.parse(argc, argv)) return *status;
   try {
     Stop stop;  // a signal is kept for it from here on
     if (parent) end_with_parent(*parent);

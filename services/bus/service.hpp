@@ -16,8 +16,8 @@
 #include "services/system/process/stall_watch.hpp"
 #include "services/system/process/stop.hpp"
 
-namespace CLI {
-class App;
+namespace stillhand::command_line {
+class Command;
 }
 
 namespace stillhand::runtime {
@@ -106,8 +106,8 @@ class Service {
 
 /// main() of every service: command line, signals, real time, errors as one line and exit status
 /// (0 good, 2 for a fault that the user can correct, 1 for any other).
-int run_service(const std::string& name, int argc, char** argv,
-                const std::function<void(Service&)>& body,
-                const std::function<void(CLI::App&, ServiceOptions&)>& more_options = {});
+int run_service(
+    const std::string& name, int argc, char** argv, const std::function<void(Service&)>& body,
+    const std::function<void(command_line::Command&, ServiceOptions&)>& more_options = {});
 
 }  // namespace stillhand::runtime

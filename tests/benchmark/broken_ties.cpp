@@ -6,7 +6,6 @@
 // A recording is diagnosed; where the planted kind ties with another one, a run of --seconds is
 // designed, made on the same body with other noise, and judged; then a run of --repeat-seconds in a
 // motion like the first one.  "right": the planted kind alone is left; "wrong": another one is.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <set>
@@ -16,6 +15,7 @@
 #include "services/core/diagnosis/working_set.hpp"
 #include "services/core/next_run/design.hpp"
 #include "services/core/next_run/tie.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
 #include "tests/benchmark/tied_subject.hpp"
 #include "tests/planted/series.hpp"
@@ -175,7 +175,7 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Ties of planted effects, and what breaks them"};
+  command_line::Program app{"Ties of planted effects, and what breaks them"};
   Options options;
   app.add_option("--ties", options.ties, "how many");
   app.add_option("--seed", options.seed, "of the series of recordings");
@@ -189,6 +189,6 @@ int main(int argc, char** argv) {
   app.add_option("--first-seconds", options.rig.seconds, "--rig: of the first recording");
   app.add_option("--cell-noise", options.rig.noise_n_rthz, "--rig: of the load cell [N/sqrt(Hz)]");
   app.add_flag("--passive", options.rig.passive, "--rig: an arm without forces of its own");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = app.parse(argc, argv)) return *status;
   return run(options);
 }

@@ -8,7 +8,6 @@
 // difference over RMS without it.
 #include "services/core/cancellation/model_watch.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
@@ -21,6 +20,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/population/population.hpp"
 #include "services/core/statistics/descriptive.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
 
 namespace {
@@ -180,12 +180,12 @@ int measure(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("false alarms and delays of the watch on the model");
-  app.add_option("--subjects", options.subjects);
-  app.add_option("--seed", options.seed);
+  command_line::Program app("false alarms and delays of the watch on the model");
+  app.add_option("--subjects", options.subjects, "how many");
+  app.add_option("--seed", options.seed, "of the subjects and their noise");
   app.add_option("--minutes", options.minutes, "of cancelling, of each subject");
   app.add_option("--rates", options.rates_h, "false alarms an hour that are stated");
   app.add_option("--changes", options.changes, "of the stiffness of shoulder and grip");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = app.parse(argc, argv)) return *status;
   return measure(options);
 }

@@ -9,7 +9,6 @@
 // Recordings are those of tests/planted with the plan's seed; README there says what is drawn.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "services/core/diagnosis/diagnose.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
 #include "tests/planted/series.hpp"
 #include "tests/planted/to_measurement.hpp"
@@ -277,7 +277,8 @@ int run(const Selection& selection) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Confusion matrix of the residual engine over recordings with planted effects"};
+  command_line::Program app{
+      "Confusion matrix of the residual engine over recordings with planted effects"};
   bool tenth = false;
   bool few = false;
   std::vector<std::size_t> only;
@@ -286,8 +287,8 @@ int main(int argc, char** argv) try {
   app.add_option("--only", only,
                  "LIST INDEX: one recording with everything that was tried; list 1 has one effect "
                  "each, 2 none, 3 two, 4 one at 5 %")
-      ->expected(2);
-  CLI11_PARSE(app, argc, argv);
+      .expected(2, 2);
+  if (const auto status = app.parse(argc, argv)) return *status;
   if (only.empty()) return run(few ? kShort : tenth ? kTenth : kWhole);
   print_one(only[0], only[1]);
   return 0;

@@ -4,7 +4,6 @@
 // recording: what was planted, how large it is next to the noise, what the engine says.
 //   build/tests/power_curves --out rows.csv --count 8 --none 400 --seed 1
 // power_curves.py runs it and fits the curves.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "services/core/diagnosis/diagnose.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "tests/benchmark/on_all_cores.hpp"
 #include "tests/planted/draw.hpp"
 #include "tests/planted/series.hpp"
@@ -118,18 +118,19 @@ void write_all(const std::vector<Case>& cases, std::FILE* file) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Effects of any size under five noises, and what the residual engine says of them"};
+  command_line::Program app{
+      "Effects of any size under five noises, and what the residual engine says of them"};
   std::string out;
   std::size_t count = 8;
   std::size_t none = 400;
   std::uint64_t seed = 1;
-  app.add_option("--out", out, "CSV file, a row for each recording")->required();
+  app.add_option("--out", out, "CSV file, a row for each recording").required();
   app.add_option("--count", count, "recordings of each kind under each noise")
-      ->capture_default_str();
+      .capture_default_str();
   app.add_option("--none", none, "recordings without an effect under each noise")
-      ->capture_default_str();
-  app.add_option("--seed", seed, "of all of them")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+      .capture_default_str();
+  app.add_option("--seed", seed, "of all of them").capture_default_str();
+  if (const auto status = app.parse(argc, argv)) return *status;
   std::FILE* file = std::fopen(out.c_str(), "w");
   if (file == nullptr) {
     std::fprintf(stderr, "power_curves: %s: cannot be written\n", out.c_str());

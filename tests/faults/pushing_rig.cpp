@@ -10,7 +10,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -21,6 +20,7 @@
 
 #include "services/devices/device_rig/device_plant.hpp"
 #include "services/files/settings/load.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/clock.hpp"
 #include "services/system/process/real_time.hpp"
 
@@ -97,9 +97,9 @@ void push(device_rig::DevicePlant& plant) {
 
 int run(int argc, char** argv) {
   std::filesystem::path config;
-  CLI::App cli("pushing_rig: the rig of devices, pushing, without a session");
-  cli.add_option("--config", config, "folder with rig.yaml and devices.yaml")->required();
-  CLI11_PARSE(cli, argc, argv);
+  command_line::Program cli("pushing_rig: the rig of devices, pushing, without a session");
+  cli.add_option("--config", config, "folder with rig.yaml and devices.yaml").required();
+  if (const auto status = cli.parse(argc, argv)) return *status;
   std::signal(SIGPIPE, SIG_IGN);  // as every process of a session
   runtime::end_with_parent(getppid());
   runtime::become_real_time();

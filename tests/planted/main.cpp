@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // planted_recordings: recordings with known effects, and their sealed labels.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 
+#include "services/system/command_line/command_line.hpp"
 #include "tests/planted/series.hpp"
 #include "tests/planted/write.hpp"
 
@@ -39,24 +39,24 @@ void write_all(const std::string& folder, const SeriesPlan& plan, std::size_t co
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Writes recordings with planted effects and their sealed labels"};
+  stillhand::command_line::Program app{
+      "Writes recordings with planted effects and their sealed labels"};
   std::string folder;
   std::size_t count = 1;
   SeriesPlan plan;
   bool list = false;
-  app.add_option("--out", folder, "folder for rec_0001.csv, rec_0001.truth.json, ...")->required();
+  app.add_option("--out", folder, "folder for rec_0001.csv, rec_0001.truth.json, ...").required();
   app.add_option("--count", count, "how many");
   app.add_option("--seed", plan.seed, "of the whole series");
   app.add_option("--kind", plan.kinds, "kinds to take in turn, or none; default: all and none")
-      ->delimiter(',');
-  app.add_option("--strength", plan.strengths, "to take in turn")->delimiter(',');
-  app.add_option("--snr", plan.snrs_db, "to take in turn [dB]")->delimiter(',');
+      .delimiter(',');
+  app.add_option("--strength", plan.strengths, "to take in turn").delimiter(',');
+  app.add_option("--snr", plan.snrs_db, "to take in turn [dB]").delimiter(',');
   app.add_option("--noise", plan.noise,
                  "white, low_pass, pink, heavy_tailed, uneven; default: white, for none drawn");
   app.add_flag("--gaps", plan.gaps, "with gaps and single rows lost");
   app.add_option("--together", plan.together, "kinds planted at once");
-  app.add_flag_function(
-      "--pairs", [&](std::int64_t) { plan.together = 2; }, "the same as --together 2");
+  app.add_flag_callback("--pairs", [&] { plan.together = 2; }, "the same as --together 2");
   app.add_option("--least-evidence", plan.least_evidence,
                  "draw an effect again until it shows this clearly: samples (left / noise)^2");
   app.add_option("--length", plan.length_s, "of a recording [s]");
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
   app.add_option("--again-length", plan.again_length_s, "of that [s]; default: as --length");
   app.add_option("--again-rate", plan.again_rate_hz, "of that [Hz]; default: as --rate");
   app.add_flag("--list", list, "say what was planted");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = app.parse(argc, argv)) return *status;
   try {
     plan.check();
     write_all(folder, plan, count, list);

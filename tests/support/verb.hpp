@@ -3,29 +3,28 @@
 
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::support {
 
 /// add_record_command() and its like.
-using AddVerb = void (*)(CLI::App&, int&);
+using AddVerb = void (*)(command_line::Command&, int&);
 
 /// Runs a verb in this process.
 /// @param words  its name first
 /// @return its exit status
-/// @throws ConfigError, CLI::ParseError as the verb
+/// @throws ConfigError, command_line::UsageError as the verb
 inline int run_verb(AddVerb add, std::vector<std::string> words) {
-  CLI::App cli;
+  command_line::Program cli;
   int status = -1;
   add(cli, status);
-  std::ranges::reverse(words);  // as CLI11 wants a vector
-  cli.parse(words);
+  cli.parse(std::move(words));
   return status;
 }
 
@@ -35,7 +34,7 @@ inline std::string refusal_of(AddVerb add, const std::vector<std::string>& words
     return "status " + std::to_string(run_verb(add, words));
   } catch (const ConfigError& error) {
     return error.what();
-  } catch (const CLI::ParseError& error) {
+  } catch (const command_line::UsageError& error) {
     return std::string("command line: ") + error.what();
   }
 }

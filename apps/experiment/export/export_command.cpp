@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -22,6 +21,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
+#include "services/system/command_line/command_line.hpp"
 #include "services/system/process/stop.hpp"
 
 namespace stillhand::experiment {
@@ -97,26 +97,26 @@ void export_set(const ExportOptions& options) {
 
 }  // namespace
 
-void add_export_command(CLI::App& verb) {
+void add_export_command(command_line::Command& verb) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* sub = verb.add_subcommand(
+  command_line::Command sub = verb.add_subcommand(
       "export",
       "Writes the data set of an unblinded experiment: codes, conditions, samples, results.");
-  sub->add_option("DIR", options->folder, "folder of the experiment")
-      ->required()
-      ->check(settings::check_name);
-  sub->add_option("--out", options->out, "new folder of the data set")->required();
-  sub->add_flag("--bids", options->bids,
-                "Brain Imaging Data Structure: motion and behavioural tables with JSON side files");
-  sub->add_flag("--csv", options->csv, "a CSV file for each table and trial");
-  sub->add_flag("--mat", options->mat, "the same tables as one MATLAB file (version 5)");
-  sub->add_flag("--hdf5", options->hdf5, "the same tables as one HDF5 file");
-  sub->add_option("--license", options->release.licence,
-                  "licence of the data set, for example CC0-1.0 or CC-BY-4.0")
-      ->check(settings::check_name);
-  sub->add_option("--author", options->release.authors, "author of the data set; may be repeated")
-      ->allow_extra_args(false);
-  sub->callback([options] { export_set(*options); });
+  sub.add_option("DIR", options->folder, "folder of the experiment")
+      .required()
+      .check(settings::check_name);
+  sub.add_option("--out", options->out, "new folder of the data set").required();
+  sub.add_flag("--bids", options->bids,
+               "Brain Imaging Data Structure: motion and behavioural tables with JSON side files");
+  sub.add_flag("--csv", options->csv, "a CSV file for each table and trial");
+  sub.add_flag("--mat", options->mat, "the same tables as one MATLAB file (version 5)");
+  sub.add_flag("--hdf5", options->hdf5, "the same tables as one HDF5 file");
+  sub.add_option("--license", options->release.licence,
+                 "licence of the data set, for example CC0-1.0 or CC-BY-4.0")
+      .check(settings::check_name);
+  sub.add_option("--author", options->release.authors, "author of the data set; may be repeated")
+      .repeatable();
+  sub.callback([options] { export_set(*options); });
 }
 
 }  // namespace stillhand::experiment

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace CLI {
-class App;
+namespace stillhand::command_line {
+class Command;
 }
 
 namespace stillhand::experiment {
 
 /// Adds `stillhand experiment export`.
-void add_export_command(CLI::App& verb);
+void add_export_command(command_line::Command& verb);
 
 }  // namespace stillhand::experiment

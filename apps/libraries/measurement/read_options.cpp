@@ -22,11 +22,12 @@ constexpr const char* kGroup = "Recordings of other programs";
 
 }  // namespace
 
-std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options) {
+std::vector<command_line::Option> add_read_options(command_line::Command& verb,
+                                                   ReadOptions& options) {
   if (isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0) {
     options.ask = [](TableFile& file) { return ask_mapping(file, std::cin, std::cerr); };
   }
-  CLI::Option* map =
+  command_line::Option map =
       verb.add_option_function<std::vector<std::string>>(
               "--map",
               [&options](const std::vector<std::string>& words) {
@@ -38,50 +39,52 @@ std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options)
               "'force=f [N]'. The time is t. A gain may follow: 'ai0=f [V] * 22.5 [N/V]'. A column "
               "without a title is '#2'. Units become SI units. Without --map, each title is 'name "
               "[unit]', and the time is 't [s]'")
-          ->type_name("'TITLE=NAME [UNIT]'")
-          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-          ->group(kGroup);
-  CLI::Option* file =
+          .type_name("'TITLE=NAME [UNIT]'")
+          .takes_all()
+          .group(kGroup);
+  command_line::Option file =
       verb.add_option(
               "--map-file", options.map_file,
               "YAML file with the mapping (map, rate_hz, separator, decimal). If it does not "
               "exist, the verb asks for the mapping on the terminal and writes the file")
-          ->check(settings::check_name)
-          ->excludes(map)
-          ->group(kGroup);
-  CLI::Option* rate = verb.add_option_function<double>(
-                              "--sample-rate",
-                              [&options](double rate_hz) {
-                                options.mapping.rate_hz = check_rate_hz(rate_hz, "--sample-rate");
-                              },
-                              "sample rate [Hz] of a file without times")
-                          ->group(kGroup);
-  CLI::Option* separator = verb.add_option_function<std::string>(
-                                   "--separator",
-                                   [&options](const std::string& word) {
-                                     options.mapping.form.separator =
-                                         parse_separator(word, "--separator");
-                                   },
-                                   "column separator of a text file [found from the content]")
-                               ->type_name("{comma,semicolon,tab,blank}")
-                               ->group(kGroup);
-  CLI::Option* decimal = verb.add_option_function<std::string>(
-                                 "--decimal",
-                                 [&options](const std::string& word) {
-                                   options.mapping.form.decimal = parse_decimal(word, "--decimal");
-                                 },
-                                 "decimal sign of a text file [found from the content]")
-                             ->type_name("{point,comma}")
-                             ->group(kGroup);
+          .check(settings::check_name)
+          .excludes(map)
+          .group(kGroup);
+  command_line::Option rate = verb.add_option_function<double>(
+                                      "--sample-rate",
+                                      [&options](double rate_hz) {
+                                        options.mapping.rate_hz =
+                                            check_rate_hz(rate_hz, "--sample-rate");
+                                      },
+                                      "sample rate [Hz] of a file without times")
+                                  .group(kGroup);
+  command_line::Option separator =
+      verb.add_option_function<std::string>(
+              "--separator",
+              [&options](const std::string& word) {
+                options.mapping.form.separator = parse_separator(word, "--separator");
+              },
+              "column separator of a text file [found from the content]")
+          .type_name("{comma,semicolon,tab,blank}")
+          .group(kGroup);
+  command_line::Option decimal = verb.add_option_function<std::string>(
+                                         "--decimal",
+                                         [&options](const std::string& word) {
+                                           options.mapping.form.decimal =
+                                               parse_decimal(word, "--decimal");
+                                         },
+                                         "decimal sign of a text file [found from the content]")
+                                     .type_name("{point,comma}")
+                                     .group(kGroup);
   return {map, file, rate, separator, decimal};
 }
 
-void add_heaviest_option(CLI::App& verb, double& heaviest_kg) {
+void add_heaviest_option(command_line::Command& verb, double& heaviest_kg) {
   verb.add_option("--heaviest", heaviest_kg,
                   "mass [kg] that a force in N may show over an acceleration in m/s^2: more is "
                   "taken for a wrong unit. State it for a machine, such as a shaking table")
-      ->check(settings::number_between(0.01, 1e7))
-      ->group(kGroup);
+      .check(settings::number_between(0.01, 1e7))
+      .group(kGroup);
 }
 
 std::string words_of(const ReadOptions& options) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/libraries/measurement/read.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::measurement {
 
@@ -13,10 +13,11 @@ namespace stillhand::measurement {
 /// --separator, --decimal.  `options` must outlive the parsing.  On a terminal, a --map-file that
 /// is not there is asked for.
 /// @returns the options that were added
-std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options);
+std::vector<command_line::Option> add_read_options(command_line::Command& verb,
+                                                   ReadOptions& options);
 
 /// Adds --heaviest, for a machine in place of a hand.  @param heaviest_kg  must outlive the parsing
-void add_heaviest_option(CLI::App& verb, double& heaviest_kg);
+void add_heaviest_option(command_line::Command& verb, double& heaviest_kg);
 
 /// The columns and the rate as the command line of a further verb states them, with a blank before
 /// each; empty: nothing was stated.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/bus/recording/keep_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <sstream>
 
 #include "services/files/settings/check_number.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::recording {
 namespace {
@@ -19,7 +19,7 @@ constexpr const char* kNotPacked = "none";  // "" in the file
 
 }  // namespace
 
-void add_keep_options(CLI::App& cli, KeepOptions& options) {
+void add_keep_options(command_line::Command& cli, KeepOptions& options) {
   const std::string group = "Recording";
   cli.add_option_function<std::string>(
          "--compression",
@@ -27,26 +27,26 @@ void add_keep_options(CLI::App& cli, KeepOptions& options) {
            options.compression = *compression_of(name == kNotPacked ? "" : name);
          },
          "compression of the chunks: zstd, lz4 or none [zstd]")
-      ->check(CLI::IsMember({"zstd", "lz4", kNotPacked}))
-      ->group(group);
+      .one_of({"zstd", "lz4", kNotPacked})
+      .group(group);
   cli.add_option_function<int>(
          "--flush-ms",
          [&options](int interval_ms) {
            options.flush_interval = std::chrono::milliseconds(interval_ms);
          },
          "longest time between two chunks [ms]; a kill loses at most this time and one write [500]")
-      ->check(CLI::Range(kLeastFlush_ms, kMostFlush_ms))
-      ->group(group);
+      .between(kLeastFlush_ms, kMostFlush_ms)
+      .group(group);
   cli.add_flag_callback(
          "--fsync", [&options] { options.durability = Durability::kPower; },
          "wait for the disk after each chunk; a power failure then loses no more than a kill")
-      ->group(group);
+      .group(group);
   cli.add_option(
          "--min-free-mb", options.min_free_mb,
          "smallest free space on the disk [MB]; below it close the file completely and stop")
-      ->check(settings::number_between(0.0, kMostMb))
-      ->capture_default_str()
-      ->group(group);
+      .check(settings::number_between(0.0, kMostMb))
+      .capture_default_str()
+      .group(group);
 }
 
 std::vector<std::string> keep_words(const KeepOptions& options) {

@@ -9,8 +9,8 @@
 #include "services/core/recording/mcap/compression.hpp"
 #include "services/files/recording/file_io.hpp"
 
-namespace CLI {
-class App;
+namespace stillhand::command_line {
+class Command;
 }
 
 namespace stillhand::recording {
@@ -25,7 +25,7 @@ struct KeepOptions {
 };
 
 /// Adds --compression, --flush-ms, --fsync and --min-free-mb; parsing sets `options`.
-void add_keep_options(CLI::App& cli, KeepOptions& options);
+void add_keep_options(command_line::Command& cli, KeepOptions& options);
 
 /// The options as words of a command line, to start a recorder in another process.
 std::vector<std::string> keep_words(const KeepOptions& options);

@@ -7,8 +7,8 @@
 #include "services/core/recording/experiment_record.hpp"
 #include "services/core/recording/mcap/mcap_format.hpp"
 
-namespace CLI {
-class App;
+namespace stillhand::command_line {
+class Command;
 }
 
 namespace stillhand::recording {
@@ -24,7 +24,7 @@ struct OfExperiment {
 };
 
 /// Adds --participant, --experiment-digest and --experiment-session; parsing sets `place`.
-void add_experiment_options(CLI::App& cli, OfExperiment& place);
+void add_experiment_options(command_line::Command& cli, OfExperiment& place);
 
 /// The place as words of a command line; none for no experiment.
 std::vector<std::string> experiment_words(const OfExperiment& place);

@@ -5,8 +5,8 @@
 
 namespace stillhand::settings {
 
-/// Check for CLI11 of an option that names a file or folder: an error text, or an empty text.  It
-/// refuses an empty name.  Without this check, an unset variable of a script (`--security ""`)
+/// Check of an option that names a file or folder: an error text, or an empty text.  It refuses an
+/// empty name.  Without this check, an unset variable of a script (`--security ""`)
 /// would have the same effect as an omitted option.
 inline std::string check_name(const std::string& word) {
   return word.empty() ? "got an empty name, want a name" : "";

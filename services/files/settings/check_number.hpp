@@ -7,7 +7,7 @@
 namespace stillhand::settings {
 
 /// A check for an option of a command line: a decimal number from `low` to `high`, both included.
-/// Unlike CLI::Range it refuses NaN.  @return "" for a good word, else one sentence
+/// Unlike Option::between() it refuses NaN.  @return "" for a good word, else one sentence
 std::function<std::string(const std::string& word)> number_between(double low, double high);
 
 }  // namespace stillhand::settings

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "services/core/admittance/session_excitation.hpp"
 #include "services/processes/cancellation/shell.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;
@@ -23,11 +23,11 @@ int main(int argc, char** argv) {
         cancellation::Shell shell(service, config, std::move(force));
         shell.run();
       },
-      [&](CLI::App& cli, runtime::ServiceOptions& options) {
+      [&](command_line::Command& cli, runtime::ServiceOptions& options) {
         cli.add_option("--canceller", canceller,
                        "now (1 kHz) or paper (the paper's low-pass, 50 Hz, one sample late), in "
                        "place of the settings' sampling")
-            ->check(CLI::IsMember({"now", "paper"}));
+            .one_of({"now", "paper"});
         cli.add_option("--perturb-period-s", perturbation.period_s,
                        "perturb the hand by a multisine of this period in place of cancelling");
         cli.add_option("--perturb-seed", perturbation.seed, "seed of its phases");

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 
@@ -9,6 +8,7 @@
 #include "services/files/settings/load.hpp"
 #include "services/files/settings/placed_error.hpp"
 #include "services/processes/rig/shell.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace {
 
@@ -61,12 +61,12 @@ int main(int argc, char** argv) {
           std::cerr << "stillhand-device_rig: " << line << '\n';
         }
       },
-      [&](CLI::App& cli, runtime::ServiceOptions&) {
+      [&](command_line::Command& cli, runtime::ServiceOptions&) {
         cli.description(
             "stillhand-device_rig: the rig of a session, made of devices and simulated parts; "
             "`stillhand lab --rig devices` starts it");
         cli.add_option("--devices", file,
                        "which device serves which signal [devices.yaml of --config]")
-            ->check(settings::check_name);
+            .check(settings::check_name);
       });
 }

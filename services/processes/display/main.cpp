@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
-
 #include "services/processes/display/screen_loop.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;
@@ -15,7 +14,7 @@ int main(int argc, char** argv) {
         display::ScreenLoop loop(shell, screen);
         service.run([&] { loop.run(); });
       },
-      [&](CLI::App& cli, runtime::ServiceOptions&) {
+      [&](command_line::Command& cli, runtime::ServiceOptions&) {
         cli.add_flag("--headless", headless, "no window");
         cli.add_option("--video", screen.video, "write the screen to this .avi file");
         cli.add_flag("--pointer", screen.pointer, "a person tracks with the mouse over the window");

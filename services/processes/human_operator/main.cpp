@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
-
 #include "services/processes/human_operator/shell.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;
@@ -12,7 +11,7 @@ int main(int argc, char** argv) {
         human_operator::Shell shell(service, with_pointer);
         shell.run();
       },
-      [&](CLI::App& cli, runtime::ServiceOptions&) {
+      [&](command_line::Command& cli, runtime::ServiceOptions&) {
         cli.add_flag("--pointer", with_pointer,
                      "use a person's mouse instead of the simulated subject");
       });

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
         recording::Shell shell(service, keep, place);
         shell.run();
       },
-      [&](CLI::App& cli, runtime::ServiceOptions& options) {
+      [&](command_line::Command& cli, runtime::ServiceOptions& options) {
         options.serialized = true;
         recording::add_keep_options(cli, keep);
         recording::add_experiment_options(cli, place);

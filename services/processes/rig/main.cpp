@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <string_view>
 
@@ -7,6 +6,7 @@
 #include "services/files/rig/sealed_file.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/processes/rig/shell.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 namespace {
 
@@ -19,21 +19,17 @@ std::string text_for(const rig::SealedSeed& sealed, const rig::RigConfig& config
 /// Draws the effect of a finished session again and writes it; uses no bus and no session.
 int open_effect(int argc, char** argv) {
   try {
-    CLI::App cli("stillhand-rig: write the undeclared effect of a finished session");
+    command_line::Program cli("stillhand-rig: write the undeclared effect of a finished session");
     bool open = false;
     std::filesystem::path config;
     std::filesystem::path out;
     std::string verdict;
-    cli.add_flag("--open-undeclared-effect", open, "read the seed from standard input")->required();
-    cli.add_option("--config", config, "folder with the settings of each service")->required();
-    cli.add_option("--out", out, "folder of the session")->required();
+    cli.add_flag("--open-undeclared-effect", open, "read the seed from standard input").required();
+    cli.add_option("--config", config, "folder with the settings of each service").required();
+    cli.add_option("--out", out, "folder of the session").required();
     cli.add_option("--verdict", verdict,
                    "file in that folder with the verdict; its digest is added to the commitment");
-    try {
-      cli.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return cli.exit(error) == 0 ? 0 : 2;
-    }
+    if (const auto status = cli.parse(argc, argv)) return *status;
     const auto sealed = rig::read_sealed_seed(std::cin);
     const auto settings = settings::load<rig::RigConfig>(config / "rig.yaml", "rig");
     rig::open_effect(out, text_for(sealed, settings), verdict);
@@ -70,7 +66,7 @@ int main(int argc, char** argv) {
                                   holds_effect ? sealed_effect(service) : rig::SealedEffect());
         rig::Shell(service, plant, config.motor).run();
       },
-      [&](CLI::App& cli, runtime::ServiceOptions&) {
+      [&](command_line::Command& cli, runtime::ServiceOptions&) {
         cli.add_flag("--undeclared-effect", holds_effect,
                      "apply an undeclared effect: read its seed from standard input, write its "
                      "digest to --out");

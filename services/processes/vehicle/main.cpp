@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "services/core/motion/motion_generator.hpp"
@@ -7,6 +6,7 @@
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/processes/vehicle/shell.hpp"
+#include "services/system/command_line/command_line.hpp"
 
 // On the bus it is the session's motion.
 int main(int argc, char** argv) {
@@ -20,14 +20,14 @@ int main(int argc, char** argv) {
             service.options().config / "vehicle.yaml", "vehicle");
         vehicle::Shell(service, vehicle::driven_config(limits, settings, vehicle)).run();
       },
-      [&](CLI::App& cli, runtime::ServiceOptions&) {
+      [&](command_line::Command& cli, runtime::ServiceOptions&) {
         cli.description(
             "stillhand-vehicle_motion: the motion of a session, by a vehicle under the stick; "
             "`stillhand lab --vehicle NAME` starts it");
         cli.add_option("--vehicle", vehicle,
                        "first_order, second_order, excavator, wheelchair, aircraft_roll, or "
                        "settings: dynamics and delay of vehicle.yaml")
-            ->check(settings::check_name)
-            ->capture_default_str();
+            .check(settings::check_name)
+            .capture_default_str();
       });
 }

@@ -99,15 +99,15 @@ TEST_F(IdentifyCommandTest, TheOrderIsTheOneAskedFor) {
 }
 
 TEST_F(IdentifyCommandTest, AnOrderOutOfRangeIsAUsageError) {
-  EXPECT_THROW(run({at("ride.csv"), "--order", "13"}), CLI::ParseError);
-  EXPECT_THROW(run({at("ride.csv"), "--order", "0"}), CLI::ParseError);
-  EXPECT_THROW(run({}), CLI::ParseError);
+  EXPECT_THROW(run({at("ride.csv"), "--order", "13"}), command_line::UsageError);
+  EXPECT_THROW(run({at("ride.csv"), "--order", "0"}), command_line::UsageError);
+  EXPECT_THROW(run({}), command_line::UsageError);
 }
 
 // An unset variable of a script, not a wish for no file.
 TEST_F(IdentifyCommandTest, AnEmptyNameIsAUsageError) {
-  EXPECT_THROW(run({at("ride.csv"), "--json", ""}), CLI::ParseError);
-  EXPECT_THROW(run({at("ride.csv"), "--save", ""}), CLI::ParseError);
+  EXPECT_THROW(run({at("ride.csv"), "--json", ""}), command_line::UsageError);
+  EXPECT_THROW(run({at("ride.csv"), "--save", ""}), command_line::UsageError);
 }
 
 TEST_F(IdentifyCommandTest, EarlierResultsAreReplaced) {

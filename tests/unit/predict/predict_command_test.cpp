@@ -111,9 +111,14 @@ TEST_F(PredictCommandTest, AFileThatIsMissingOrNoModelIsNamed) {
 }
 
 TEST_F(PredictCommandTest, AnOutputIsAskedForByName) {
-  EXPECT_THROW(run({path("model.json"), path("ride.csv")}), CLI::RequiredError);
-  EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", ""}), CLI::ValidationError);
-  EXPECT_THROW(run({path("model.json"), "--out", path("out.csv")}), CLI::RequiredError);
+  const auto refusal_of = [](const std::vector<std::string>& words) {
+    return support::refusal_of(add_predict_command, support::named("predict", words));
+  };
+  EXPECT_EQ(refusal_of({path("model.json"), path("ride.csv")}), "command line: --out is required");
+  EXPECT_EQ(refusal_of({path("model.json"), path("ride.csv"), "--out", ""}),
+            "command line: --out: got an empty name, want a name");
+  EXPECT_EQ(refusal_of({path("model.json"), "--out", path("out.csv")}),
+            "command line: REC is required");
 }
 
 // Where the recording holds the output, it is judged: y = 2 u + 0.5, the linear model says u.

@@ -3,19 +3,19 @@
 
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
+#include <utility>
+
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::recording::keep_options_test {
 namespace {
 
 // What a recorder's command line makes of these words.
 KeepOptions parsed(std::vector<std::string> words) {
-  CLI::App cli;
+  command_line::Program cli;
   KeepOptions options;
   add_keep_options(cli, options);
-  std::ranges::reverse(words);  // as CLI11 takes them
-  cli.parse(words);
+  cli.parse(std::move(words));
   return options;
 }
 
@@ -45,7 +45,7 @@ TEST(KeepOptionsTest, WhatCannotBeIsRefused) {
                                                 {"--flush-ms", "nan"},
                                                 {"--min-free-mb", "nan"},
                                                 {"--min-free-mb", "-1"}}) {
-    EXPECT_THROW(parsed(words), CLI::ParseError) << words.back();
+    EXPECT_THROW(parsed(words), command_line::UsageError) << words.back();
   }
 }
 

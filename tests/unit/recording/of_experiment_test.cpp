@@ -3,18 +3,18 @@
 
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
+#include <utility>
+
+#include "services/system/command_line/command_line.hpp"
 
 namespace stillhand::recording::of_experiment_test {
 namespace {
 
 OfExperiment parsed(std::vector<std::string> words) {
-  CLI::App cli;
+  command_line::Program cli;
   OfExperiment place;
   add_experiment_options(cli, place);
-  std::ranges::reverse(words);  // as CLI11 takes them
-  cli.parse(words);
+  cli.parse(std::move(words));
   return place;
 }
 
@@ -26,9 +26,10 @@ TEST(OfExperimentTest, AnotherProcessHearsTheSame) {
 }
 
 TEST(OfExperimentTest, APlaceIsGivenWholeOrNotAtAll) {
-  EXPECT_THROW(parsed({"--participant", "P07"}), CLI::ParseError);
-  EXPECT_THROW(parsed({"--experiment-session", "01"}), CLI::ParseError);
-  EXPECT_THROW(parsed({"--participant", "P07", "--experiment-digest", "a"}), CLI::ParseError);
+  EXPECT_THROW(parsed({"--participant", "P07"}), command_line::UsageError);
+  EXPECT_THROW(parsed({"--experiment-session", "01"}), command_line::UsageError);
+  EXPECT_THROW(parsed({"--participant", "P07", "--experiment-digest", "a"}),
+               command_line::UsageError);
 }
 
 TEST(OfExperimentTest, TheRecordHasTheThreeKeysOfTheFormat) {

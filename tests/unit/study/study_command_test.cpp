@@ -50,7 +50,7 @@ TEST_F(StudyCommandTest, AValueOutOfAnOptionsRangeIsAUsageError) {
         Words{"--threads", "257"}, Words{"--threads", "-1"}, Words{"--subjects", "twelve"},
         Words{"--trial-seconds", "3 minutes"}, Words{"--undeclared-effect", "-1"},
         Words{"--no-such-option"}, Words{"stray"}}) {
-    EXPECT_THROW(run(words), CLI::ParseError) << words.front() << " " << words.back();
+    EXPECT_THROW(run(words), command_line::UsageError) << words.front() << " " << words.back();
   }
   EXPECT_FALSE(fs::exists(folder_ / "study"));
 }
