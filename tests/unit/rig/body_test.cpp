@@ -270,27 +270,31 @@ TEST(BodyTest, RefusesAStickWithoutMass) {
   EXPECT_THROW(Body(BodyConfig{}, stick), ConfigError);
 }
 
-// Eq. RG-28: a level is the body with k_a, k_h times exp(0.02 L) and c_a, c_h times its root.
+// Eq. RG-28: a level is the body with k_a, k_h times exp(0.02 L) and c_a, c_h times its root, where
+// RG-27, RG-28 or RG-40 alone can change it.
 TEST(BodyTest, AStiffnessLevelIsTheBodyWithThatStiffness) {
   constexpr int kLevel = 20;
-  BodyConfig varies;
-  varies.neuromuscular.wander = 0.1;
   BodyConfig stiff;
   const double factor = std::exp(StiffnessLevels::kStep * kLevel);
   stiff.shoulder_stiffness_n_m *= factor;
   stiff.grip_stiffness_n_m *= factor;
   stiff.shoulder_damping_n_s_m *= std::sqrt(factor);
   stiff.grip_damping_n_s_m *= std::sqrt(factor);
-  Body sut(varies, StickConfig{});
-  Body same(stiff, StickConfig{});
-  for (int n = 0; n < 4 * kSecond; ++n) {
-    const double a_m_s2 = 3.0 * std::sin(kTwoPi * 2.0 * n * kDt_s);
-    const bool pegged = n < kSecond;
-    const auto out = sut.step({a_m_s2, 0.0, 0.0, pegged, 0.0, kLevel});
-    const auto expected = same.step({a_m_s2, 0.0, 0.0, pegged});
-    // Rounding of the factors: a few ulp of 20 N.
-    ASSERT_NEAR(out.feedthrough_force_n, expected.feedthrough_force_n, 1e-10) << n;
-    ASSERT_NEAR(out.theta_rad, expected.theta_rad, 1e-12) << n;
+  for (const NeuromuscularConfig& hand : {NeuromuscularConfig{.stiffening_by_vibration_s2_m = -0.1},
+                                          {.stiffening_by_motor_n = 0.1},
+                                          {.wander = 0.1},
+                                          {.change = 0.6}}) {
+    Body sut(BodyConfig{.neuromuscular = hand}, StickConfig{});
+    Body same(stiff, StickConfig{});
+    for (int n = 0; n < 4 * kSecond; ++n) {
+      const double a_m_s2 = 3.0 * std::sin(kTwoPi * 2.0 * n * kDt_s);
+      const bool pegged = n < kSecond;
+      const auto out = sut.step({a_m_s2, 0.0, 0.0, pegged, 0.0, kLevel});
+      const auto expected = same.step({a_m_s2, 0.0, 0.0, pegged});
+      // Rounding of the factors: a few ulp of 20 N.
+      ASSERT_NEAR(out.feedthrough_force_n, expected.feedthrough_force_n, 1e-10) << n;
+      ASSERT_NEAR(out.theta_rad, expected.theta_rad, 1e-12) << n;
+    }
   }
 }
 

@@ -73,7 +73,7 @@ void apply(Reflex& reflex, const std::array<double, N>& from, std::array<double,
 
 bool changes_stiffness(const NeuromuscularConfig& config) {
   return config.wander > 0.0 || config.stiffening_by_vibration_s2_m != 0.0 ||
-         config.stiffening_by_motor_n > 0.0;
+         config.stiffening_by_motor_n > 0.0 || config.change != 0.0;
 }
 
 /// Shoulder and grip; their damping ratios stay.
