@@ -46,7 +46,7 @@ const std::vector<double> kLines_hz = {0.2, 0.7, 1.3, 2.0, 2.9,  4.1,
 // of H that passes the chain (all but the masses above the load cell), leaves room for the images
 // near 1 kHz.  Transients: slowest mode decays with 5 /s, so e^-50 is left after 10 s.
 TEST(BodyTest, FeedthroughFollowsItsAnalyticFrequencyResponse) {
-  const BodyConfig body;
+  const BodyConfig body{.arm_rest_stiffness_n_m = 300.0, .arm_rest_damping_n_s_m = 10.0};
   const StickConfig stick;
   for (const bool pegged : {true, false}) {
     Body sut(body, stick);
@@ -73,13 +73,15 @@ TEST(BodyTest, FeedthroughFollowsItsAnalyticFrequencyResponse) {
 // second-order rest of its square.  Measured against the middle of the tick the half tick is gone.
 TEST(BodyTest, StickFollowsTheHandAdmittance) {
   const BodyConfig body;
-  const auto stick = frictionless();
+  auto stick = frictionless();
+  stick.centring_stiffness_n_m = 150.0;
   Body sut(body, stick);
   std::vector<double> input;
   std::vector<double> output;
   for (int n = 0; n < 20 * kSecond; ++n) {
     const double force_n = multisine(kLines_hz, n * kDt_s);
-    const auto out = sut.step({0.0, 0.0, force_n, false});
+    // Half is the person's own, half shakes the hand above the cell.
+    const auto out = sut.step({0.0, 0.0, 0.5 * force_n, false, 0.5 * force_n});
     if (n < 10 * kSecond) continue;
     input.push_back(force_n);
     output.push_back(out.theta_rad * stick.lever_m);
@@ -210,7 +212,8 @@ TEST(BodyTest, ASteadyPushSinksIntoTheRubberByForceOverStiffness) {
   EXPECT_NEAR(out.omega_rad_s, 0.0, 1e-9);
 }
 
-// Critically damped from rest at x0: acceleration x0 / tau^2 at most, 4 m/s^2 here, so the rate
+// Critically damped from rest at x0, RG-4: x0 (1 + t/tau) exp(-t/tau), which the held force of the
+// peg meets to a part of a tick.  Acceleration x0 / tau^2 at most, 4 m/s^2 here, so the rate
 // changes by 0.04 rad/s a tick; 1.5 times that for the force steps of the muscles that relax.
 TEST(BodyTest, ThePegDrawsTheStickSmoothlyToExactlyZero) {
   const StickConfig stick = frictionless();
@@ -227,6 +230,9 @@ TEST(BodyTest, ThePegDrawsTheStickSmoothlyToExactlyZero) {
     out = sut.step({0.0, 0.0, 0.0, true});
     ASSERT_LE(out.theta_rad, before_rad + 1e-12) << n;
     ASSERT_GE(out.theta_rad, -1e-6) << n;
+    const double along = (n + 1) * kDt_s / stick.peg_seat_time_s;
+    ASSERT_NEAR(out.theta_rad * stick.lever_m, start_m * (1.0 + along) * std::exp(-along),
+                0.01 * start_m);
     ASSERT_LT(std::abs(out.omega_rad_s - before_rad_s), jump_rad_s) << n;
     before_rad = out.theta_rad;
     before_rad_s = out.omega_rad_s;
@@ -235,21 +241,28 @@ TEST(BodyTest, ThePegDrawsTheStickSmoothlyToExactlyZero) {
   EXPECT_EQ(out.omega_rad_s, 0.0);
 }
 
+// With the person's own force on top, RG-5, and what shakes the hand above the cell, RG-22 to
+// RG-24.
 TEST(BodyTest, APeggedStickShowsTheFeedthroughOnItsLoadCell) {
   Body sut(BodyConfig{}, StickConfig{});
+  Body plain(BodyConfig{}, StickConfig{});
   for (int n = 0; n < 5 * kSecond; ++n) {
-    const auto out = sut.step({2.0 * std::sin(0.01 * n), 10.0, 0.0, true});
+    const double a_m_s2 = 2.0 * std::sin(0.01 * n);
+    const auto out = sut.step({a_m_s2, 10.0, 5.0, true, 3.0});
     ASSERT_EQ(out.theta_rad, 0.0);
-    ASSERT_EQ(out.hand_force_n, out.feedthrough_force_n) << n;
+    ASSERT_EQ(out.hand_force_n, out.feedthrough_force_n + 5.0) << n;
+    ASSERT_NEAR(out.feedthrough_force_n,
+                plain.step({a_m_s2, 0.0, 0.0, true}).feedthrough_force_n + 3.0, 1e-12);
   }
 }
 
 // Newton below the load cell: m_d a_j = f_cell + everything that acts there.  Without friction,
-// damping or spring, f_cell = m_d a_j - f_m; a_j by central difference, error (w dt)^2 / 6 = 1.4e-3
+// f_cell = m_d a_j - f_m + b v_j + k_c x_j; a_j by central difference, error (w dt)^2 / 6 = 1.4e-3
 // of m_d a_j for the fastest mode (15 Hz).
 TEST(BodyTest, TheLoadCellForceAcceleratesTheDriveInertia) {
   StickConfig stick = frictionless();
-  stick.viscous_damping_n_s_m = 0.0;
+  stick.viscous_damping_n_s_m = 5.0;
+  stick.centring_stiffness_n_m = 200.0;
   Body sut(BodyConfig{}, stick);
   std::vector<Body::Output> out;
   const auto motor_n = [](int n) { return 3.0 * std::sin(0.03 * n); };
@@ -261,7 +274,9 @@ TEST(BodyTest, TheLoadCellForceAcceleratesTheDriveInertia) {
         (out[n + 1].omega_rad_s - out[n - 1].omega_rad_s) * stick.lever_m / (2.0 * kDt_s);
     // The motor force steps by up to 0.09 N at a tick's edge; the difference straddles one edge.
     const double held_n = 0.5 * (motor_n(static_cast<int>(n)) + motor_n(static_cast<int>(n) + 1));
-    ASSERT_NEAR(out[n].hand_force_n, stick.drive_mass_kg * accel_m_s2 - held_n, 0.05) << n;
+    const double below_n =
+        held_n - stick.lever_m * (5.0 * out[n].omega_rad_s + 200.0 * out[n].theta_rad);
+    ASSERT_NEAR(out[n].hand_force_n, stick.drive_mass_kg * accel_m_s2 - below_n, 0.05) << n;
   }
 }
 

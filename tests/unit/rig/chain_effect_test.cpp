@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "services/core/contract/units.hpp"
@@ -186,8 +185,6 @@ TEST(ChainEffectTest, AHeldDifferenceForceAgreesWithATenTimesFinerStep) {
           std::max(force_n, std::abs(coarse[n].feedthrough_force_n - fine[n].feedthrough_force_n));
       acts_n = std::max(acts_n, std::abs(coarse[n].hand_force_n - plain[n].hand_force_n));
     }
-    RecordProperty("spring_" + std::to_string(static_cast<int>(spring)),
-                   std::to_string(angle_rad) + " rad, " + std::to_string(force_n) + " N");
     std::printf("spring %d: %.2g rad, %.2g N; acts with %.2g N\n", static_cast<int>(spring),
                 angle_rad, force_n, acts_n);
     EXPECT_LT(angle_rad, 2e-5) << static_cast<int>(spring);
@@ -219,16 +216,23 @@ TEST(ChainEffectTest, FrictionOfTheEffectIsAddedToTheStickSOwn) {
   }
 }
 
-// 1 - exp(-t/tau): after five time constants 0.7 % of the growth is left.
+// 1 - exp(-t/tau): after five time constants 0.7 % of the growth is left.  Springs and dampers
+// grow.
 TEST(ChainEffectTest, AnArmThatTightensPassesFromItsOwnStiffnessToTheLast) {
   ChainEffect effect = effect_of(Spring::kTighteningArm);
   EffectOnChain sut(effect, kControlPeriod_s);
   const auto p = chain_parameters(BodyConfig{}, StickConfig{}, true);
-  const ChainPlace at{0.0, 0.0, 0.001, 0.0, 0.0, 0.0};
+  const ChainPlace at{0.002, 0.01, 0.003, 0.05, 0.001, 0.02};
   EXPECT_EQ(sut.forces(at, p).hand_n, 0.0);
   for (int n = 0; n < 2500; ++n) sut.age();
-  EXPECT_NEAR(sut.forces(at, p).hand_n, 0.4 * (1.0 - std::exp(-5.0)) * p.grip_stiffness_n_m * 0.001,
-              1e-9);
+  const double more = 0.4 * (1.0 - std::exp(-5.0));
+  const double shoulder_n =
+      more * (p.shoulder_stiffness_n_m * 0.001 + p.shoulder_damping_n_s_m * 0.04);
+  const double grip_n = more * (p.grip_stiffness_n_m * 0.002 + p.grip_damping_n_s_m * 0.03);
+  const ChainForces f = sut.forces(at, p);
+  EXPECT_NEAR(f.trunk_n, shoulder_n, 1e-9);
+  EXPECT_NEAR(f.arm_n, -shoulder_n - grip_n, 1e-9);
+  EXPECT_NEAR(f.hand_n, grip_n, 1e-9);
 }
 
 }  // namespace

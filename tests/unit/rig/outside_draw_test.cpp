@@ -88,15 +88,16 @@ TEST(OutsideEffectTest, TheReflexComesAfterItsDelay) {
   effect.time_s = 0.04;
   EffectOnChain sut(effect, kControlPeriod_s);
   const auto p = chain_parameters({}, {}, false);
-  const ChainPlace stretched{0.0, 0.0, 0.01, 0.0, 0.0, 0.0};
+  // 5 mm of stretch, and 0.03 s of 0.2 m/s.
+  const ChainPlace stretched{0.005, 0.1, 0.01, 0.3, 0.0, 0.0};
   // The sample that the delay line returns is 40 ticks old: the force comes with the 41st.
   for (int n = 0; n < 40; ++n) {
     sut.move(stretched, stretched, 0.0);
     EXPECT_EQ(sut.forces(stretched, p).arm_n, 0.0) << n;
   }
   sut.move(stretched, stretched, 0.0);
-  EXPECT_DOUBLE_EQ(sut.forces(stretched, p).arm_n, -1.0);
-  EXPECT_DOUBLE_EQ(sut.forces(stretched, p).trunk_n, 1.0);
+  EXPECT_DOUBLE_EQ(sut.forces(stretched, p).arm_n, -1.1);
+  EXPECT_DOUBLE_EQ(sut.forces(stretched, p).trunk_n, 1.1);
 }
 
 TEST(OutsideEffectTest, DragIsSquareAndOpposesTheMotion) {
