@@ -87,6 +87,13 @@ TEST(PlatformTest, StaysInsideItsLimitsWhateverIsAskedOfIt) {
     ASSERT_LE(std::pow(out.state.velocity_m_s, 2) / (2.0 * config.max_acceleration_m_s2),
               room_m + config.max_acceleration_m_s2 * kDt_s * kDt_s)
         << n;
+    // Nor does it brake earlier than it must: RG-2 with both sides equal.
+    if ((out.flags & kWorkspaceLimit) && out.state.position_m * out.state.velocity_m_s > 0.0) {
+      const double stop_m = out.state.position_m + out.state.velocity_m_s *
+                                                       std::abs(out.state.velocity_m_s) / 2.0 /
+                                                       config.max_acceleration_m_s2;
+      ASSERT_NEAR(std::abs(stop_m), config.workspace_m, 1e-9) << n;
+    }
   }
   EXPECT_TRUE(seen & kWorkspaceLimit);
   EXPECT_TRUE(seen & kSaturated);

@@ -155,9 +155,11 @@ TEST(RigTest, AStaleOperatorForceFadesToZero) {
   for (int n = 0; n < 500; ++n) sut.step(input);
   input.operator_age_ticks = 100;
   EXPECT_EQ(sut.step(input).truth.volitional_force_n, 15.0);
-  input.operator_age_ticks = 101;
+  input.operator_age_ticks = 0;
+  EXPECT_EQ(sut.step(input).flags & kInputStale, kGood);
   double before_n = 15.0;
   for (int n = 0; n < 50; ++n) {
+    input.operator_age_ticks = n % 2 == 0 ? 101 : -1;  // too old, and from the future
     const auto out = sut.step(input);
     EXPECT_TRUE(out.flags & kInputStale);
     ASSERT_LT(out.truth.volitional_force_n, before_n);

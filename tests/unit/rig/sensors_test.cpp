@@ -85,6 +85,9 @@ TEST(SensorsTest, ClipsAtTheEndOfTheRangeAndSaysSo) {
   const auto pushed = sut.step({0.0, 0.0, kGravity_m_s2, 1e6, 0.0, 0.0});
   EXPECT_EQ(pushed.flags, kSaturated);
   EXPECT_EQ(pushed.raw.load_cell_v, 10.0 - 20.0 / 65536.0);
+  const auto pulled = sut.step({0.0, 0.0, kGravity_m_s2, -1e6, 0.0, 0.0});
+  EXPECT_EQ(pulled.flags, kSaturated);
+  EXPECT_EQ(pulled.raw.load_cell_v, -10.0);
 }
 
 TEST(SensorsTest, TheSameSeedGivesTheSameSamplesAndAnotherSeedOthers) {
