@@ -47,7 +47,6 @@ std::optional<std::int64_t> ClockComparison::take(const Exchange& exchange) noex
   if (count_ == 0) {
     origin_ns_ = exchange.back_ns;
     origin_offset_ns_ = offset_ns;
-    away_ = 0;
   }
   const Sample sample{seconds(exchange.back_ns - origin_ns_),
                       seconds(offset_ns - origin_offset_ns_), round_trip_s};

@@ -47,6 +47,13 @@ void run(ClockComparison& sut, Network& network, int exchanges) {
   for (int i = 0; i < exchanges; ++i) sut.take(network.exchange());
 }
 
+// Without jitter: number i of those that are asked every quarter of a second.
+Exchange even(int i, std::int64_t ahead_ns, std::int64_t way_ns = 80'000) {
+  const std::int64_t asked_ns = 1000 * kSecond_ns + i * kEvery_ns;
+  const std::int64_t there_ns = asked_ns + way_ns;
+  return {asked_ns, there_ns + ahead_ns, there_ns + 20'000 + ahead_ns, there_ns + 20'000 + way_ns};
+}
+
 double error_ns(const ClockComparison& sut, const Network& network) {
   return static_cast<double>(sut.offset(network.now_ns)->offset_ns -
                              (network.other(network.now_ns) - network.now_ns));
@@ -54,11 +61,47 @@ double error_ns(const ClockComparison& sut, const Network& network) {
 
 TEST(ClockComparisonTest, SaysNothingBeforeEightExchanges) {
   ClockComparison sut;
-  Network network;
-  run(sut, network, 7);
-  EXPECT_FALSE(sut.offset(network.now_ns));
-  run(sut, network, 1);
-  EXPECT_TRUE(sut.offset(network.now_ns));
+  for (const int i : {0, 1, 2, 3, 4, 5, 6, 6}) sut.take(even(i, 0));  // the last comes twice
+  EXPECT_FALSE(sut.offset(even(6, 0).back_ns));
+  sut.take(even(7, 0));
+  EXPECT_TRUE(sut.offset(even(7, 0).back_ns));
+}
+
+// Eq. CK-4 of equal exchanges: half of the round trip, and until they span 5 s 20e-6 of the time
+// since the first, from which the middle of the drifting offsets is away.  Then the drift is exact.
+TEST(ClockComparisonTest, WithoutJitterOffsetDriftAndUncertaintyAreExact) {
+  ClockComparison sut;
+  for (int i = 0; i < 64; ++i) {
+    const std::int64_t ahead_ns = 3 * kSecond_ns + 12'500 * i;  // 50e-6
+    const Exchange exchange = even(i, ahead_ns);
+    sut.take(exchange);
+    const auto out = sut.offset(exchange.back_ns + 10 * kSecond_ns);
+    if (!out || i == 20) continue;
+    ASSERT_EQ(std::isfinite(out->drift_sigma_ppm), i > 20) << i;
+    ASSERT_NEAR(out->drift_ppm, i > 20 ? 50.0 : 0.0, 1e-3);
+    ASSERT_EQ(out->round_trip_ns, 160'000);
+    const double early_ns = 12'500.0 * ((i + 1) / 2) + 20e-6 * (0.25e9 * i + 10e9);
+    ASSERT_NEAR(out->uncertainty_ns, 80e3 + (i > 20 ? 0.0 : early_ns), 2.0) << i;
+    if (i > 20) {
+      ASSERT_NEAR(static_cast<double>(out->offset_ns - ahead_ns), 500e3, 2.0);
+    }
+  }
+}
+
+// Eq. CK-5: the third in a row beyond half of the round trip, or 1 ms.
+TEST(ClockComparisonTest, AStepIsTheThirdExchangeInARowBeyondTheBound) {
+  for (const std::int64_t way_ns : {80'000, 2'000'000}) {
+    for (const double share : {0.99, 1.01, -0.99, -1.01}) {
+      const std::int64_t step_ns = std::llround(share * (way_ns == 80'000 ? 1e6 : 2e6));
+      ClockComparison sut;
+      for (int i = 0; i < 64; ++i) sut.take(even(i, 0, way_ns));
+      for (int i = 64; i < 70; ++i) {  // two, one on the other side, and three again
+        const auto found = sut.take(even(i, i == 66 ? -2 * step_ns : step_ns, way_ns));
+        ASSERT_EQ(found.has_value(), i == 69 && std::abs(share) > 1.0) << share << " " << i;
+        ASSERT_NEAR(static_cast<double>(found.value_or(step_ns) - step_ns), 0.0, 2.0);
+      }
+    }
+  }
 }
 
 TEST(ClockComparisonTest, TheOffsetLiesWithinItsUncertaintyThoughOneExchangeInFiveIsHeldUp) {
@@ -134,26 +177,24 @@ TEST(ClockComparisonTest, AClockThatKeepsTimeIsNeverSaidToDriftOrJump) {
   }
 }
 
-class ClockStepTest : public testing::TestWithParam<std::int64_t> {};
-
-TEST_P(ClockStepTest, IsNoticedWithinThreeExchangesAndTheNewOffsetIsRight) {
-  ClockComparison sut;
-  Network network{.held_up = 0.1};
-  run(sut, network, 100);
-  network.offset_ns += GetParam();
-  int needed = 0;
-  std::optional<std::int64_t> step_ns;
-  while (needed < 20 && !(step_ns = sut.take(network.exchange()))) ++needed;
-  EXPECT_LE(needed, 6);  // one or two of them may have been held up
-  run(sut, network, 16);
-  const ClockOffset offset = *sut.offset(network.now_ns);
-  EXPECT_EQ(offset.steps, 1);
-  ASSERT_TRUE(step_ns);
-  EXPECT_NEAR(static_cast<double>(*step_ns), static_cast<double>(GetParam()), 10.5e6);
-  EXPECT_LE(std::abs(error_ns(sut, network)), offset.uncertainty_ns);
+TEST(ClockComparisonTest, AStepIsNoticedWithinThreeExchangesAndTheNewOffsetIsRight) {
+  for (const std::int64_t jump_ns : {20'000'000L, -20'000'000L, 3600L * kSecond_ns}) {
+    ClockComparison sut;
+    Network network{.held_up = 0.1};
+    run(sut, network, 100);
+    network.offset_ns += jump_ns;
+    int needed = 0;
+    std::optional<std::int64_t> step_ns;
+    while (needed < 20 && !(step_ns = sut.take(network.exchange()))) ++needed;
+    EXPECT_LE(needed, 6);  // one or two of them may have been held up
+    run(sut, network, 16);
+    const ClockOffset offset = *sut.offset(network.now_ns);
+    EXPECT_EQ(offset.steps, 1);
+    ASSERT_TRUE(step_ns);
+    EXPECT_NEAR(static_cast<double>(*step_ns), static_cast<double>(jump_ns), 10.5e6);
+    EXPECT_LE(std::abs(error_ns(sut, network)), offset.uncertainty_ns);
+  }
 }
-INSTANTIATE_TEST_SUITE_P(ForthAndBack, ClockStepTest,
-                         testing::Values(20'000'000, -20'000'000, 3600 * kSecond_ns));
 
 TEST(ClockComparisonTest, WhatIsNoExchangeIsPassedOver) {
   ClockComparison sut;
