@@ -165,9 +165,6 @@ TEST(PlatformGuardTest, NoInputBreaksTheLimits) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     expect_promise_kept(PlatformLimits{}, seed, 200'000);
   }
-}
-
-TEST(PlatformGuardTest, NoInputBreaksOtherLimitsEither) {
   expect_promise_kept({0.02, 2.0, 15.0, 0.1, 100.0}, 11, 200'000);
   expect_promise_kept({0.15, 0.05, 0.5, 15.0, 5.0}, 12, 400'000);
   expect_promise_kept({0.001, 0.01, 1.0, 1.0, 20.0}, 13, 200'000);
@@ -237,7 +234,8 @@ TEST(PlatformGuardTest, WithAJerkBrakingBeginsAndEndsSoftly) {
   }
 }
 
-// A source that is lost where the wall is near: it takes more than the stopping deceleration.
+// A source that is lost where the wall is near: it takes more than the stopping deceleration,
+// v^2/(2 gap) of Eq. MO-4, which stays the same until rest at the wall.
 TEST(PlatformGuardTest, ACommandThatIsLostNearTheWallStopsBeforeIt) {
   PlatformLimits limits;
   limits.max_velocity_m_s = 1.5;
@@ -249,12 +247,33 @@ TEST(PlatformGuardTest, ACommandThatIsLostNearTheWallStopsBeforeIt) {
     EXPECT_EQ(sut.state().position_m, -0.1);
     // Away to the right as fast as it lets, until 1.2 m/s at some 0.07 m.
     while (sut.state().position_m < 0.071) sut.step(asking(0.15, 1.5, 0.0));
-    ASSERT_GT(sut.state().velocity_m_s, 1.2);
+    const double speed_m_s = sut.state().velocity_m_s;
+    ASSERT_GT(speed_m_s, 1.2);
+    const double needed_m_s2 = speed_m_s * speed_m_s / 2.0 / (0.15 - sut.state().position_m);
     for (int n = 0; n < 400; ++n) {
       const PlatformCommand before = sut.state();
       ASSERT_EQ(broken_promise(before, sut.step({}), limits), "") << n;
+      ASSERT_TRUE(n > 99 || std::abs(sut.state().acceleration_m_s2 + needed_m_s2) < 1e-6) << n;
     }
     EXPECT_EQ(sut.state().velocity_m_s, 0.0);
+  }
+}
+
+// Eq. MO-2 and MO-1 from rest, a percent to either side of their ends.  At the wall the way of the
+// tick, 0.9/2, and to brake, 0.9^2/2.
+TEST(PlatformGuardTest, WhatIsReachableEndsWhereItsEquationsSay) {
+  constexpr double kFull_m_s = 9.0 * kDt_s;
+  constexpr double kFull_m = kFull_m_s * kDt_s;
+  for (const double share : {0.99, 1.01}) {
+    const double cases[][3]{{0.0, share * 0.25 * kFull_m, 0.0},
+                            {0.0, (0.3 + share * 0.64 * 0.25) * kFull_m, 0.6 * kFull_m_s},
+                            {0.15 - 0.855 / share * kFull_m, 0.45 * kFull_m, 0.9 * kFull_m_s}};
+    for (const auto& [from_m, by_m, v_m_s] : cases) {
+      PlatformGuard sut{PlatformLimits{}};
+      sut.stand_at(from_m);
+      const Flags flags = sut.step(asking(from_m + by_m, v_m_s, 0.0)).flags;
+      EXPECT_EQ(flags, share < 1.0 ? kGood : kWorkspaceLimit) << from_m << " " << v_m_s;
+    }
   }
 }
 
@@ -273,12 +292,25 @@ TEST(PlatformGuardTest, AStepIsShapedFlaggedAndReachedWithoutOvershoot) {
   double furthest_m = 0.0;
   EXPECT_EQ(sut.step(asking(0.1, 0, 0)).flags, kWorkspaceLimit);
   for (int n = 0; n < 3000; ++n) {
-    furthest_m = std::max(furthest_m, sut.step(asking(0.1, 0, 0)).position_m);
+    const PlatformCommand at = sut.step(asking(0.1, 0, 0));
+    furthest_m = std::max(furthest_m, at.position_m);
+    // Half of 3 m/s^2 on the way, which the speed follows a time of 1/(4 w) late.
+    if (at.position_m > 0.05 && at.position_m < 0.09) {
+      const double left_m = 0.1 - at.position_m - 0.5 * 1.5 / 400.0;
+      ASSERT_NEAR(at.velocity_m_s, std::sqrt(3.0 * left_m) + 1.5 / 80.0, 4e-3) << n;
+    }
   }
   // The linear part of MO-3 is overdamped (4 w against w), so nothing overshoots; the guard locks
   // onto the command once it is within the slack of MO-2, A dt^2 / 4 = 2.25e-6 m.
   EXPECT_LE(furthest_m, 0.1 + 2.25e-6);
   EXPECT_TRUE(same_bits(sut.state(), {0.1, 0, 0, kGood}));
+  // Near the command e'' = 4 w (-w e - e') is critically damped; steps of 2 w dt = 4 %.
+  PlatformGuard near{PlatformLimits{}};
+  for (int n = 1; n <= 100; ++n) {
+    const double along = 40.0 * n * kDt_s;
+    ASSERT_NEAR(1e-3 - near.step(asking(1e-3, 0, 0)).position_m,
+                1e-3 * (1.0 + along) * std::exp(-along), 3e-5);
+  }
 }
 
 // After an outage of any length within a moving trial the motion is caught up with.  Time allowed:
