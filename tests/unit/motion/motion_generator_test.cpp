@@ -28,7 +28,10 @@ Trial trial() { return {0, TrialPhase::kTracking, kStart, kDuration, kRamp}; }
 
 MotionGenerator armed() {
   MotionGenerator sut{MotionGenerator::Config{}};
-  sut.arm(trajectory(), trial());
+  Trial planned = trial();
+  planned.start_tick += 77;
+  sut.arm(trajectory(), planned);
+  sut.announce(trial());  // the same trial, at its own start
   return sut;
 }
 

@@ -7,15 +7,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "places.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/motion/motion_trajectory.hpp"
+#include "services/messages/motion/ride_file.hpp"
 
 namespace stillhand::motion::ride_test {
 
@@ -41,19 +40,35 @@ MotionProfile ride_of(const std::vector<std::pair<double, double>>& hz_and_m_s2,
   return profile;
 }
 
-// Oracle: the sine itself, in the middle of the record, away from its ends.  H at 2 Hz with a
-// corner of 0.1 Hz is 1 - (0.05)^8 = 1 - 4e-11; what remains is leakage of the ends, where the
-// mirror image turns the sine round: a kink of slope 2 w A, whose high-passed trace has died out,
-// and whose cut at 8..10 Hz rings as 1/(distance)^3; 1e-3 of the amplitude 15 s away bounds it
-// generously.
+// Oracle: the sine itself, from its largest value on, where the mirror image goes on smoothly.  H
+// at 2 Hz with a corner of 0.1 Hz is 1 - (0.05)^8 = 1 - 4e-11; what remains is leakage of the other
+// end, where the mirror image turns the sine round: a kink, whose high-passed trace has died out,
+// and whose cut at 8..10 Hz rings as 1/(distance)^3; 1e-3 of the amplitude bounds it generously.
 TEST(RideTest, ASineIsResampledWithoutDelayOrLoss) {
-  const auto profile = ride_of({{2.0, 1.0}}, 40.0);
+  auto profile = ride_of({{2.0, 1.0}}, 40.0);
+  auto& ride = profile.ride_accel_m_s2;
+  ride.erase(ride.begin(), ride.begin() + 13);  // an eighth of a second
   const MotionTrajectory sut(profile, PlatformLimits{});
   EXPECT_EQ(sut.report().corner_hz, 0.1);
-  for (Tick n = 15'000; n < 25'000; ++n) {
+  for (Tick n = 0; n < 38'000; ++n) {
     const double want =
-        std::sin(2.0 * std::numbers::pi * 2.0 * static_cast<double>(n) * kControlPeriod_s);
+        std::cos(2.0 * std::numbers::pi * 2.0 * static_cast<double>(n) * kControlPeriod_s);
     ASSERT_NEAR(sut.at(n + profile.ramp_ticks).acceleration_m_s2, want, 1e-3) << n;
+  }
+}
+
+// Eq. MO-14 with corners of 1 and 10 Hz, on a single sample, whose N lines all are 2/N; far from
+// the ends it has no mirror image, and its mean of 1/4160 is felt in the lowest lines alone.
+TEST(RideTest, ItsBandPassIsThatOfItsEquation) {
+  auto profile = ride_of({{2.0, 0.0}}, 40.0);
+  profile.ride_accel_m_s2[2200] = 1.0;
+  const MotionSpectrum got = Ride(profile).above(1.0);
+  for (const double near_hz : {0.8, 1.0, 2.0, 7.9, 8.5, 9.0, 9.7}) {
+    const auto line = static_cast<std::size_t>(std::llround(near_hz * got.period_s) - got.first);
+    const double f_hz = got.rad_s(line) / (2.0 * std::numbers::pi);
+    const double edge = std::clamp((f_hz - 8.0) / 2.0, 0.0, 1.0);
+    EXPECT_NEAR(std::abs(got.accel_m_s2[line]) * 104.0 * got.period_s / 2.0,
+                (0.5 + 0.5 * std::cos(std::numbers::pi * edge)) / (1.0 + std::pow(f_hz, -8)), 3e-3);
   }
 }
 
@@ -94,56 +109,22 @@ TEST(RideTest, AConstantOffsetMakesNoMotion) {
 }
 
 TEST(RideTest, RecordsThatCannotBeFollowedAreRefused) {
-  const PlatformLimits limits;
-  auto profile = ride_of({{2.0, 1.0}}, 20.0);
-  profile.ride_accel_m_s2[100] = std::nan("");
-  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
-  profile = ride_of({{2.0, 1.0}}, 20.0);
-  profile.duration_ticks = 24'000;  // the record has 23 s
-  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
-  profile = ride_of({{2.0, 1.0}}, 20.0);
-  profile.ride_rate_hz = 19.9;  // less than twice 10 Hz
-  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
-  profile = ride_of({{2.0, 0.0}}, 20.0);
-  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
-  profile = ride_of({{2.0, 1.0}}, 20.0);
-  profile.rms_m_s2 = 1.6;
-  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
-  profile = ride_of({{5.0, 1000.0}}, 20.0);  // at the highest corner, 8 Hz, still 1000/44 m/s^2
-  profile.band_high_hz = 8.0;
-  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
-  profile = ride_of({{3.0, 1.7e308}}, 20.0);  // the spectrum overflows to NaN
-  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
-}
-
-struct Column {
-  std::vector<double> time_s;
-  std::vector<double> values;
-};
-
-// A column by its header name; CSV as the project writes it.
-Column column_of(const std::filesystem::path& file, const std::string& name) {
-  std::ifstream stream(file);
-  std::string line;
-  std::getline(stream, line);
-  std::size_t wanted = 0;
-  {
-    std::istringstream header(line);
-    std::size_t index = 0;
-    for (std::string cell; std::getline(header, cell, ','); ++index) {
-      if (cell == name) wanted = index;
-    }
-  }
-  Column out;
-  while (wanted > 0 && std::getline(stream, line)) {
-    std::istringstream row(line);
-    std::string cell;
-    for (std::size_t i = 0; i <= wanted && std::getline(row, cell, ','); ++i) {
-      if (i == 0) out.time_s.push_back(std::stod(cell));
-      if (i == wanted) out.values.push_back(std::stod(cell));
-    }
-  }
-  return out;
+  const auto refused = [](double hz, double m_s2, void (*spoil)(MotionProfile&)) {
+    auto profile = ride_of({{hz, m_s2}}, 20.0);
+    spoil(profile);
+    EXPECT_THROW(MotionTrajectory(profile, PlatformLimits{}), ConfigError) << hz << " " << m_s2;
+  };
+  refused(2.0, 1.0, [](MotionProfile& p) { p.ride_accel_m_s2[100] = std::nan(""); });
+  refused(2.0, 1.0, [](MotionProfile& p) { p.duration_ticks = 24'000; });  // the record has 23 s
+  refused(2.0, 1.0, [](MotionProfile& p) { p.ride_rate_hz = 19.9; });      // less than twice 10 Hz
+  refused(2.0, 0.0, [](MotionProfile&) {});
+  refused(2.0, 1.0, [](MotionProfile& p) { p.rms_m_s2 = 1.6; });
+  // At the highest corner, 8 Hz, still 1000/44 m/s^2; then a spectrum that overflows to NaN.
+  refused(5.0, 1000.0, [](MotionProfile& p) { p.band_high_hz = 8.0; });
+  refused(3.0, 1.7e308, [](MotionProfile&) {});
+  auto slow = ride_of({{2.0, 1.0}}, 20.0);
+  slow.ride_rate_hz = 20.1;
+  EXPECT_NO_THROW(MotionTrajectory(slow, PlatformLimits{}));
 }
 
 std::filesystem::path measured_recordings() {
@@ -155,17 +136,16 @@ std::filesystem::path measured_recordings() {
 TEST(RideTest, AMeasuredCarRideDrivesThePlatform) {
   const auto file = measured_recordings() / "car_ride.csv";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file << "; set STILLHAND_DATA";
-  const Column lateral = column_of(file, "a_y [m/s^2]");
-  ASSERT_GT(lateral.values.size(), 6000u);
+  const RideRecord ride = read_ride(file);
+  ASSERT_GT(ride.accel_m_s2.size(), 6000u);
   MotionProfile profile;
   profile.kind = MotionKind::kRide;
   profile.rms_m_s2 = 0.0;
   profile.band_low_hz = 0.05;
   profile.band_high_hz = 6.0;  // platform bandwidth, paper III-C
   profile.duration_ticks = 55'000;
-  profile.ride_accel_m_s2 = lateral.values;
-  profile.ride_rate_hz = static_cast<double>(lateral.values.size() - 1) /
-                         (lateral.time_s.back() - lateral.time_s.front());
+  profile.ride_accel_m_s2 = ride.accel_m_s2;
+  profile.ride_rate_hz = ride.rate_hz;
   const PlatformLimits limits;
   const MotionTrajectory sut(profile, limits);
 
