@@ -86,6 +86,11 @@ TEST(LoopMarginTest, ALoopSteppedInTimeChangesSidesAtTheCriticalGain) {
       if (above.gain_m_s2_rad > 100.0) continue;  // beyond the setting's range
       EXPECT_GT(growth(above, hand), 1.0) << name << ", " << delay_s << " s";
       EXPECT_FALSE(margin(above, response_of(hand, 400)).stable);
+      // On the limit the loop is 1 at the frequency stated; the grid of 600 has steps of 0.9 %.
+      above.gain_m_s2_rad = limit.critical_gain_m_s2_rad;
+      const Complex loop = vehicle_response(above, limit.frequency_hz) *
+                           response_of(hand, 400).at(limit.frequency_hz);
+      EXPECT_LT(std::abs(loop - 1.0), 0.02) << name << ", " << delay_s << " s";
       ++both_sides;
     }
   }
@@ -124,7 +129,10 @@ TEST(LoopMarginTest, TheIntervalHoldsTheTruth) {
 
 TEST(LoopMarginTest, AResponseWithoutTwoRisingFrequenciesIsRefused) {
   EXPECT_THROW(margin({}, {}), ConfigError);
-  EXPECT_THROW(margin({}, {{2.0, 1.0}, {1.0, 1.0}, {}}), ConfigError);
+  const IdentifiedResponse wrong[]{{{2.0, 1.0}, {1.0, 1.0}, {}}, {{1.0, 1.0}, {1.0, 1.0}, {}},
+                                   {{1.0}, {1.0}, {}},           {{0.0, 1.0}, {1.0, 1.0}, {}},
+                                   {{1.0, 2.0}, {1.0}, {}},      {{1.0, 2.0}, {1.0, 1.0}, {1.0}}};
+  for (const IdentifiedResponse& each : wrong) EXPECT_THROW(margin({}, each), ConfigError);
 }
 
 }  // namespace

@@ -62,6 +62,19 @@ TEST(VehicleTest, TheResponseIsTheClosedForm) {
   }
 }
 
+// Eq. VH-4 in continuous time, behind a lag of 5 ms and the delay: a tick changes it by w dt of the
+// highest rate, 2 pi 0.4 Hz 1 ms = 0.3 %.
+TEST(VehicleTest, TheWashoutIsAThirdOrderHighPass) {
+  VehicleConfig config;
+  config.lag_s = 0.005;
+  const double w = kTwoPi * 0.4;
+  for (const double f : {0.03, 0.1, 0.4, 1.0}) {
+    const Complex s{0.0, kTwoPi * f};
+    const Complex washout = s * s * s / ((s * s + 2.0 * 0.7 * w * s + w * w) * (s + kTwoPi * 0.05));
+    EXPECT_NEAR(std::abs(vehicle_response(config, f) / (3.0 * washout)), 1.0, 0.01) << f;
+  }
+}
+
 // G is the largest |V| without the washout: at high frequency where the speed follows with one lag,
 // at the natural frequency with two, at 0 Hz where the acceleration follows.
 // Where the stick sets an acceleration, the gain is that at 0 Hz: the largest without a resonance.
@@ -116,6 +129,8 @@ TEST(VehicleTest, NothingPassesTheBoundOfTheAcceleration) {
       input.platform_velocity_m_s = 1.2 * std::cos(0.013 * n);
       const VehicleMotion out = sut.step(input);
       ASSERT_LE(std::abs(out.acceleration_m_s2), config.max_acceleration_m_s2);
+      ASSERT_EQ((out.flags & kSaturated) != 0u,
+                std::abs(out.acceleration_m_s2) == config.max_acceleration_m_s2);
       ASSERT_TRUE(std::isfinite(out.position_m) && std::isfinite(out.velocity_m_s));
     }
   }
