@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 
 #include "services/core/contract/config_error.hpp"
 
@@ -65,9 +66,10 @@ TEST(CommandShapingTest, BeginsWithTheCommandAsItIs) {
 }
 
 TEST(CommandShapingTest, RefusesAFilterOutOfRange) {
-  EXPECT_THROW(CommandShaping({Kind::kLowPass, 0.0, 0.7}), ConfigError);
-  EXPECT_THROW(CommandShaping({Kind::kLowPass, 200.0, 0.7}), ConfigError);
-  EXPECT_THROW(CommandShaping({Kind::kNotch, 1.0, 0.0}), ConfigError);
+  for (const auto& [f, z] : {std::pair{0.009, 0.7}, {101.0, 0.7}, {1.0, 0.04}, {1.0, 2.1}}) {
+    EXPECT_THROW(CommandShaping({Kind::kNotch, f, z}), ConfigError) << f << " " << z;
+  }
+  for (const double z : {0.06, 1.9}) EXPECT_NO_THROW(CommandShaping({Kind::kLowPass, 1.0, z}));
 }
 
 }  // namespace stillhand::cancellation::command_shaping_test

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/signal/band_pass.hpp"
 #include "services/core/signal/second_order_lag.hpp"
 #include "tests/support/rms_share.hpp"
 
@@ -44,6 +46,34 @@ struct Hand {
   double step(double force_n) { return lag.step(force_n / 1100.0).x; }
 };
 constexpr double kFeedthrough_n_s2_m = -3.0;
+
+// Eq. MI-3 by its sums, both forms.  eps is that of a platform that stands still: 0.05 m/s^2 at
+// each of the 50 weights.
+TEST(LmsFilterTest, EachUpdateIsThatOfTheEquation) {
+  for (const bool force : {false, true}) {
+    const SecondaryPath hand{1.0, 12.0, 900.0};  // 30 rad/s, a damping ratio of 0.2
+    LmsFilter sut(force ? LmsConfig{0.05, hand} : LmsConfig{0.05});
+    signal::BandPass of_u(2, 0.5, force ? 3.0 : 6.0, 1000.0);
+    signal::BandPass of_e = of_u;
+    signal::SecondOrderLag path(30.0, 0.2, 1e-3);
+    std::vector<double> a(500), u(500), w(50);  // 0.5 s of rest
+    for (std::size_t n = 501; n <= 3500; ++n) {
+      const double t = static_cast<double>(n);
+      a.push_back(std::sin(0.008 * t) + 0.3 * std::sin(0.02 * t + 1.0));
+      u.push_back(of_u.step(force ? path.step(a.back() / 900.0).x : a.back()));
+      double y = 0.0;
+      double power = 50.0 * std::pow(force ? 0.05 / 900.0 : 0.05, 2);
+      for (std::size_t i = 0; i < 50; ++i) y += w[i] * a[n - 1 - 10 * i];
+      for (std::size_t i = 0; i < 50; ++i) power += std::pow(u[n - 1 - 10 * i], 2);
+      ASSERT_NEAR(sut.output(a.back()), y, 1e-9 * std::abs(y) + 1e-10) << n;
+      sut.learn(0.01 * std::cos(0.011 * t), true);
+      const double e = of_e.step(0.01 * std::cos(0.011 * t));
+      if (n % 10 != 0) continue;
+      for (std::size_t i = 0; i < 50; ++i) w[i] += 0.05 * e / power * u[n - 1 - 10 * i];
+    }
+    EXPECT_NE(w[49], 0.0);
+  }
+}
 
 // After a minute less than 5 % of the motion is left: 50 weights can copy this plant in the band to
 // 1 %, and mu = 0.05 has settled by then.

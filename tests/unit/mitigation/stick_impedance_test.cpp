@@ -17,14 +17,9 @@
 
 namespace stillhand::cancellation::stick_impedance_test {
 
-TEST(StickImpedanceTest, HoldsAgainstAStillStickByItsStiffness) {
-  StickImpedance sut({.stiffness_n_m = 200.0});
-  EXPECT_DOUBLE_EQ(sut.step(0.05, 0.0), -200.0 * 0.10 * 0.05);
-}
-
-TEST(StickImpedanceTest, OpposesSpeedByItsDamping) {
-  StickImpedance sut({.damping_n_s_m = 20.0});
-  EXPECT_DOUBLE_EQ(sut.step(0.3, 0.5), -20.0 * 0.10 * 0.5);
+TEST(StickImpedanceTest, HoldsAStillStickByItsStiffnessAndOpposesSpeedByItsDamping) {
+  EXPECT_DOUBLE_EQ(StickImpedance({.stiffness_n_m = 200.0}).step(0.05, 0.0), -200.0 * 0.10 * 0.05);
+  EXPECT_DOUBLE_EQ(StickImpedance({.damping_n_s_m = 20.0}).step(0.3, 0.5), -20.0 * 0.10 * 0.5);
 }
 
 // Oracle: M s v behind 1/(1 + s/w10).  The lag is stepped by Euler, which is off by half a tick of
