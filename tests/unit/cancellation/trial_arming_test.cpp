@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 namespace stillhand::cancellation::trial_arming_test {
 namespace {
 
@@ -15,46 +17,59 @@ TrialArming with(const Trial& trial, const Assignment& assignment) {
   return sut;
 }
 
-TEST(TrialArmingTest, NothingIsArmedBeforeAnAssignment) {
-  TrialArming sut;
-  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kUnassigned);
-  EXPECT_FALSE(sut.acts(0, {}));
-  sut.announce(kTracking);
-  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kUnassigned);
-  EXPECT_FALSE(sut.acts(1200, {}));
-}
-
 TEST(TrialArmingTest, TrialAndAssignmentComeInEitherOrder) {
   TrialArming sut;
+  EXPECT_FALSE(sut.acts(0, {}));
+  EXPECT_EQ(sut.readiness(true, {}), Readiness::kUnassigned);
   sut.assign({3, true});
-  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kUnassigned);
+  EXPECT_EQ(sut.readiness(true, {}), Readiness::kUnassigned);
   sut.announce(kTracking);
-  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kArmed);
+  EXPECT_EQ(sut.readiness(true, {}), Readiness::kArmed);
   EXPECT_TRUE(sut.acts(1200, {}));
 }
 
-TEST(TrialArmingTest, AnAssignmentOfAnotherTrialDoesNotCount) {
-  const TrialArming sut = with(kTracking, {2, true});
-  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kUnassigned);
-  EXPECT_FALSE(sut.acts(1200, {}));
-}
-
-TEST(TrialArmingTest, ATrialWithCancellationNeedsAModel) {
-  const TrialArming sut = with(kTracking, {3, true});
-  EXPECT_EQ(sut.readiness(false, std::nullopt), Readiness::kNoModel);
-  EXPECT_EQ(sut.readiness(false, 1000), Readiness::kArmed);  // its first measured tick
-  EXPECT_EQ(sut.readiness(false, 1001), Readiness::kModelTooLate);
-  EXPECT_EQ(sut.readiness(true, 1001), Readiness::kArmed);  // with the one in use
-}
-
-TEST(TrialArmingTest, ATrialWithoutCancellationNeedsNone) {
-  const TrialArming sut = with(kTracking, {3, false});
-  EXPECT_EQ(sut.readiness(false, std::nullopt), Readiness::kArmed);
-  EXPECT_FALSE(sut.acts(1200, {}));
+TEST(TrialArmingTest, ATrialIsArmedWithWhatItsAssignmentNeeds) {
+  constexpr Assignment kOther{2, true}, kPlain{3, false}, kCancelled{3, true};
+  constexpr Assignment kParts{3, false, true}, kForceParts{3, false, true, true};
+  const struct {
+    std::optional<Assignment> assignment;
+    bool has_model;
+    std::optional<Tick> next_model;
+    PreparedParts prepared;
+    Readiness wanted;
+  } cases[]{{{}, true, {}, {}, Readiness::kUnassigned},
+            {kOther, true, {}, {}, Readiness::kUnassigned},
+            {kPlain, false, {}, {}, Readiness::kArmed},
+            {kCancelled, false, {}, {}, Readiness::kNoModel},
+            {kCancelled, false, 1000, {}, Readiness::kArmed},  // its first measured tick
+            {kCancelled, false, 1001, {}, Readiness::kModelTooLate},
+            {kCancelled, true, 1001, {}, Readiness::kArmed},  // with the one in use
+            {kParts, true, {}, {}, Readiness::kNoMitigation},
+            {kParts, true, {}, {3}, Readiness::kNoMitigation},
+            {kParts, false, {}, {1}, Readiness::kArmed},
+            {kForceParts, false, {}, {1}, Readiness::kNoModel},
+            {kForceParts, false, 1001, {1}, Readiness::kModelTooLate},
+            {kForceParts, false, 1000, {1}, Readiness::kArmed},
+            {kForceParts, true, {}, {1}, Readiness::kArmed},
+            {kForceParts, true, {}, {}, Readiness::kNoMitigation}};
+  for (const auto& each : cases) {
+    TrialArming sut;
+    sut.announce(kTracking);
+    if (each.assignment) sut.assign(*each.assignment);
+    EXPECT_EQ(sut.readiness(each.has_model, each.next_model, each.prepared), each.wanted)
+        << &each - cases;
+    const bool cancels = each.assignment && each.assignment->trial == 3 && !each.assignment->parts;
+    if (each.prepared.assignment == 0) {
+      EXPECT_EQ(sut.acts(1200, {}), cancels && each.assignment->cancellation) << &each - cases;
+    }
+  }
 }
 
 TEST(TrialArmingTest, ItCancelsInTheTrackingTrialAndItsRampsAlone) {
   const TrialArming sut = with(kTracking, {3, true});
+  EXPECT_FALSE(sut.begun(899));
+  EXPECT_TRUE(sut.begun(900));
+  EXPECT_FALSE(with(kTracking, {2, true}).begun(1200));
   EXPECT_FALSE(sut.acts(899, {}));
   EXPECT_TRUE(sut.acts(900, {}));
   EXPECT_TRUE(sut.acts(1599, {}));
@@ -64,26 +79,10 @@ TEST(TrialArmingTest, ItCancelsInTheTrackingTrialAndItsRampsAlone) {
   EXPECT_FALSE(with(pegged, {3, true}).acts(1200, {}));
 }
 
-TEST(TrialArmingTest, AMitigatedTrialIsArmedWithItsOwnMitigationAlone) {
-  const TrialArming sut = with(kTracking, {3, false, true});
-  EXPECT_EQ(sut.newest(), 1);
-  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kNoMitigation);
-  EXPECT_EQ(sut.readiness(true, std::nullopt, PreparedParts{3}), Readiness::kNoMitigation);
-  EXPECT_EQ(sut.readiness(false, std::nullopt, PreparedParts{1}), Readiness::kArmed);
-}
-
-TEST(TrialArmingTest, APartThatNeedsTheForceNeedsItsModelAsCancellationDoes) {
-  const TrialArming sut = with(kTracking, {3, false, true, true});
-  EXPECT_EQ(sut.readiness(false, std::nullopt, {1}), Readiness::kNoModel);
-  EXPECT_EQ(sut.readiness(false, 1001, {1}), Readiness::kModelTooLate);
-  EXPECT_EQ(sut.readiness(false, 1000, {1}), Readiness::kArmed);
-  EXPECT_EQ(sut.readiness(true, std::nullopt, {1}), Readiness::kArmed);
-  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kNoMitigation);
-}
-
 // A refused assignment must not run what was made of the one before, for the same trial.
 TEST(TrialArmingTest, AnotherAssignmentOfTheSameTrialNeedsAMitigationOfItsOwn) {
   TrialArming sut = with(kTracking, {3, false, true});
+  EXPECT_EQ(sut.newest(), 1);
   ASSERT_TRUE(sut.acts(1200, {1}));
   sut.assign({3, false, true});
   EXPECT_EQ(sut.newest(), 2);
