@@ -28,6 +28,8 @@ TEST(ConfigErrorTest, ALongTextIsCutBetweenCharacters) {
   EXPECT_LE(shown.size(), 1003u);
   EXPECT_EQ(shown.substr(shown.size() - 5), "\u00fc...");
   EXPECT_EQ(in_one_line("short"), "short");
+  EXPECT_EQ(in_one_line(std::string(1000, 'a')), std::string(1000, 'a'));
+  EXPECT_EQ(in_one_line(std::string(1001, 'a')), std::string(1000, 'a') + "...");
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ struct Disturbance {
 /// What a run leaves behind, one sample a tick.
 struct TrackingRun {
   signal::ReferenceDesign design;
-  std::vector<double> target_m, cursor_m, error_m, force_n, crossover_hz;
+  std::vector<double> cursor_m, error_m, force_n;
 
   [[nodiscard]] double error_rms_m() const { return signal::rms(error_m); }
   [[nodiscard]] double dwell() const {
@@ -111,11 +111,9 @@ inline TrackingRun close_the_loop(const CrossoverConfig& config, double duration
     const auto out = subject.step({tick, target_m, cursor_m, true});
     stick.push(out.force_n + disturbance_at(disturbance, run.design, tick, period));
     if (tick < period) continue;
-    run.target_m.push_back(target_m);
     run.cursor_m.push_back(cursor_m);
     run.error_m.push_back(target_m - cursor_m);
     run.force_n.push_back(out.force_n);
-    run.crossover_hz.push_back(subject.crossover_hz());
   }
   return run;
 }

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "services/core/contract/config_error.hpp"
 #include "services/core/rig/parts/body_response.hpp"
 #include "services/core/rig/rig.hpp"
@@ -17,8 +19,15 @@ TEST(TaskTest, HoldingIsStifferThanRelaxingAndGivingWayIsSofter) {
   };
   EXPECT_LT(compliance(Task::kHold), compliance(Task::kRelax));
   EXPECT_LT(compliance(Task::kRelax), compliance(Task::kGiveWay));
-  EXPECT_GT(doing({}, Task::kHold).neuromuscular.reflex_stiffness_n_m, 0.0);
-  EXPECT_EQ(doing(doing({}, Task::kHold), Task::kRelax).neuromuscular.reflex_stiffness_n_m, 0.0);
+  const rig::BodyConfig hold = doing({}, Task::kHold);
+  EXPECT_EQ(hold.neuromuscular.reflex_stiffness_n_m, 250.0);
+  EXPECT_EQ(hold.neuromuscular.reflex_damping_n_s_m, 250.0 * 0.125);
+  EXPECT_EQ(hold.neuromuscular.reflex_delay_s, 0.035);
+  const rig::BodyConfig yielding = doing(hold, Task::kGiveWay);
+  EXPECT_EQ(yielding.neuromuscular.reflex_stiffness_n_m, 0.0);
+  EXPECT_EQ(yielding.cocontraction_damping_factor, 1.0);
+  EXPECT_EQ(yielding.shoulder_stiffness_n_m, 0.5 * hold.shoulder_stiffness_n_m);
+  EXPECT_EQ(yielding.shoulder_damping_n_s_m, std::sqrt(0.5) * hold.shoulder_damping_n_s_m);
 }
 
 TEST(TaskTest, ABodyOfEveryTaskIsOneThatTheRigTakes) {
