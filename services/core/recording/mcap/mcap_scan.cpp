@@ -19,7 +19,7 @@ std::uint8_t value(Opcode opcode) { return static_cast<std::uint8_t>(opcode); }
 
 // Smallest content of each kind of record, by opcode; kind 0 does not exist.
 constexpr std::array<std::uint64_t, kLastKnownOpcode + 1> kLeastContentBytes = {
-    0, 8, 20, 14, 16, kMessageHeadBytes, kChunkFixedBytes, 6, 68, 40, 48, 46, 8, 20, 17, 4};
+    0, 8, 20, 14, 16, kMessageHeadBytes, kChunkFixedBytes, 6, 64, 36, 48, 46, 8, 20, 17, 4};
 
 // A chunk record at the front of `bytes`.  Test: its length equals the sum of its fields, which
 // random bytes do not satisfy.
