@@ -35,11 +35,11 @@ void check(const TrackingRecord& record, const signal::ReferenceDesign& design,
         "tracking.cursor_m", std::to_string(record.cursor_m.size()) + " samples",
         std::to_string(record.target_m.size()) + ", as many as of the target, at a rate above 0");
   }
-  const auto most = static_cast<std::int64_t>(record.target_m.size()) / 2;
   // Neighbours of the highest line need room as well.
-  if (design.harmonics.back() + kNeighbours >= most) {
+  const std::int64_t least = 2 * (design.harmonics.back() + kNeighbours);
+  if (static_cast<std::int64_t>(record.target_m.size()) <= least) {
     throw ConfigError("tracking.target_m", std::to_string(record.target_m.size()) + " samples",
-                      "more than " + std::to_string(2 * (design.harmonics.back() + kNeighbours)));
+                      "more than " + std::to_string(least));
   }
   for (std::size_t n = 0; n < record.target_m.size(); ++n) {
     if (!std::isfinite(record.target_m[n]) || !std::isfinite(record.cursor_m[n])) {

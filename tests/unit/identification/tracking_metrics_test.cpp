@@ -11,6 +11,7 @@
 #include "services/core/contract/units.hpp"
 #include "services/core/signal/random.hpp"
 #include "services/core/signal/spectrum.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::identification::tracking_metrics_test {
 namespace {
@@ -222,7 +223,16 @@ TEST(TrackingMetricsTest, UnusableRecordsAreRefused) {
   broken.cursor_m.pop_back();
   EXPECT_THROW(tracking_metrics(broken, design), ConfigError);
   EXPECT_THROW(tracking_metrics({100.0, {1.0}, {1.0}}, design), ConfigError);
+  // The highest line is 240, and its neighbours reach to 246.
+  for (const std::size_t samples : {492u, 493u}) {
+    const std::vector<double> still(samples, 0.0);
+    EXPECT_EQ(
+        support::refusal([&] { tracking_metrics({100.0, still, still}, design); }),
+        samples == 492 ? "tracking.target_m: got 492 samples, want more than 492" : "accepted");
+  }
   EXPECT_THROW(tracking_metrics(record, design, {0.015, 10.0, 1}), ConfigError);
+  EXPECT_THROW(tracking_metrics(record, design, {0.015, 10.0, 16}), ConfigError);
+  for (const int lines : {2, 15}) tracking_metrics(record, design, {0.015, 10.0, lines});
   EXPECT_THROW(tracking_metrics(record, design, {0.015, 0.0, 11}), ConfigError);
 }
 
