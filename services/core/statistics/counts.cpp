@@ -47,9 +47,7 @@ MedianInterval median_interval(std::vector<double> values, double confidence) {
   const boost::math::binomial_distribution<> below(static_cast<double>(values.size()), 0.5);
   // Eq. ST-20: the largest k whose tail is small enough.
   std::size_t k = 0;
-  while (k < values.size() / 2 && cdf(below, static_cast<double>(k)) <= (1.0 - confidence) / 2.0) {
-    ++k;
-  }
+  while (cdf(below, static_cast<double>(k)) <= (1.0 - confidence) / 2.0) ++k;
   constexpr double kNoEnd = std::numeric_limits<double>::infinity();
   out.low = k == 0 ? -kNoEnd : values[k - 1];
   out.high = k == 0 ? kNoEnd : values[values.size() - k];
