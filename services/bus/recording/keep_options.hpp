@@ -22,6 +22,8 @@ struct KeepOptions {
                                                   ///< time and the data that wait for the disk
   Durability durability = Durability::kProcess;
   double min_free_mb = 16;  ///< [MB] free on the disk; below it the recording stops
+
+  bool operator==(const KeepOptions&) const = default;
 };
 
 /// Adds --compression, --flush-ms, --fsync and --min-free-mb; parsing sets `options`.

@@ -49,6 +49,8 @@ struct FeedthroughModel {
   double condition_number = 0.0;  ///< [-] of the least squares
   double conversion_error = 0.0;  ///< [-] Eq. ID-11 over 0 to 10 Hz
   bool refined = false;           ///< Eq. ID-6 was applied
+
+  bool operator==(const FeedthroughModel&) const = default;
 };
 
 /// What the steps of identify() found.

@@ -33,6 +33,8 @@ struct FitQuality {
   double free_run_rms_n = 0.0;        ///< [N] error from the acceleration alone
   double free_run_vaf_percent = 0.0;  ///< [%]
   std::size_t samples = 0;            ///< [-] judged
+
+  bool operator==(const FitQuality&) const = default;
 };
 
 /// Variance accounted for, Eq. ID-3: 100 (1 - var(f - f_hat) / var(f)) [%]; may be negative.

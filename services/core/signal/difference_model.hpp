@@ -21,6 +21,7 @@ struct DifferenceModel {
 
   /// p [-]; the model must not be empty.
   [[nodiscard]] std::size_t order() const noexcept { return denominator.size() - 1; }
+  bool operator==(const DifferenceModel&) const = default;
 };
 
 /// True when every number is finite, sizes agree and are at least 1, d_0 is 1, the rate positive.

@@ -19,23 +19,16 @@ KeepOptions parsed(std::vector<std::string> words) {
   return options;
 }
 
-void expect_same(const KeepOptions& a, const KeepOptions& b) {
-  EXPECT_EQ(a.compression, b.compression);
-  EXPECT_EQ(a.flush_interval, b.flush_interval);
-  EXPECT_EQ(a.durability, b.durability);
-  EXPECT_EQ(a.min_free_mb, b.min_free_mb);
-}
-
-TEST(KeepOptionsTest, NothingSaidIsTheDefault) { expect_same(parsed({}), KeepOptions{}); }
+TEST(KeepOptionsTest, NothingSaidIsTheDefault) { EXPECT_EQ(parsed({}), KeepOptions{}); }
 
 TEST(KeepOptionsTest, AnotherProcessHearsTheSame) {
   for (const Compression packing : {Compression::kNone, Compression::kLz4, Compression::kZstd}) {
     for (const Durability durability : {Durability::kProcess, Durability::kPower}) {
       const KeepOptions wanted{packing, std::chrono::milliseconds(37), durability, 1.0 / 3.0};
-      expect_same(parsed(keep_words(wanted)), wanted);
+      EXPECT_EQ(parsed(keep_words(wanted)), wanted);
     }
   }
-  expect_same(parsed(keep_words({})), KeepOptions{});
+  EXPECT_EQ(parsed(keep_words({})), KeepOptions{});
 }
 
 TEST(KeepOptionsTest, WhatCannotBeIsRefused) {
