@@ -35,9 +35,7 @@ TEST(CsvTest, AcceptsWhatSpreadsheetsWrite) {
   const Recording sut =
       parse_csv("\xEF\xBB\xBF\"t [s]\", \"f [N]\" \r\n 0 ,+1\r\n 0.5 ,\t2\r\n\r\n", "ride.csv");
   EXPECT_THAT(sut.find("f")->values, ElementsAre(1.0, 2.0));
-}
-
-TEST(CsvTest, AcceptsALastLineWithoutAnEnd) {
+  // A last line without an end.
   EXPECT_EQ(parse_csv("t [s],f [N]\n0,1\n1,2", "x").row_count(), 2u);
 }
 
@@ -83,9 +81,18 @@ TEST(CsvTest, SaysWhereARowIsWrong) {
   EXPECT_THAT(error_of(header + "0,1\n"), HasSubstr("got 1 rows, want at least 2"));
 }
 
+TEST(CsvTest, RowsThatARecorderWroteTwiceAreLeftOut) {
+  const std::string rows = "t [s],f [N],g [N]\n0,1,5\n1,2,6\n0,1,5\n1,2,6\n";
+  const Recording sut = parse_csv(rows + "2,3,7\n", "x");
+  EXPECT_THAT(sut.time_s, ElementsAre(0.0, 1.0, 2.0));
+  EXPECT_EQ(sut.repeated_rows, 2u);
+  EXPECT_THAT(error_of(rows + "0,1,6\n"), HasSubstr("got time 0 s, want more than 1 s"));
+}
+
 TEST(CsvTest, KeepsALongWrongCellShort) {
   const std::string error = error_of("t [s],f [N]\n0," + std::string(100'000, 'x') + "\n");
   EXPECT_LT(error.size(), 200u);
+  EXPECT_THAT(error, HasSubstr("got '" + std::string(40, 'x') + "...', want"));
 }
 
 TEST(CsvTest, NeverReadsOutsideItsText) {

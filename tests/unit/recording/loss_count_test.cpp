@@ -8,25 +8,26 @@
 namespace stillhand::recording::loss_count_test {
 namespace {
 
-TEST(LossCountTest, NothingIsLostWhereBothNumberingsGoOn) {
-  LossCount sut;
-  for (int i = 0; i < 10; ++i) sut.step(40 + i, 7 + i);
-  EXPECT_EQ(sut.received(), 10);
-  EXPECT_EQ(sut.lost(), 0);
-}
-
-TEST(LossCountTest, WhatWasSentBeforeTheFirstSampleIsNotLost) {
-  LossCount sut;
-  sut.step(1'000'000, 5'000'000);
-  EXPECT_EQ(sut.lost(), 0);
-}
-
-TEST(LossCountTest, ASampleMissingByBothCountsOnce) {
-  LossCount sut;
-  sut.step(1, 10);
-  sut.step(4, 13);
-  EXPECT_EQ(sut.lost(), 2);
-  EXPECT_EQ(sut.not_sent(), 0);
+TEST(LossCountTest, ASampleIsLostWhereEitherNumberIsMissing) {
+  const struct {
+    const char* what;
+    std::vector<std::pair<std::int64_t, Tick>> samples;
+    std::int64_t lost, not_sent;
+  } cases[] = {
+      {"both go on", {{40, 7}, {41, 8}, {42, 9}}, 0, 0},
+      {"sent before the first sample", {{1'000'000, 5'000'000}}, 0, 0},
+      {"missing by both counts once", {{1, 10}, {4, 13}}, 2, 0},
+      {"a tick never reached the writer's DDS", {{1, 10}, {2, 14}}, 3, 3},
+      {"without ticks the sequence alone tells", {{1, -1}, {6, -1}}, 4, 0},
+      {"another session of the writer", {{1, 9000}, {2, 0}, {3, 1}}, 0, 0},
+  };
+  for (const auto& [what, samples, lost, not_sent] : cases) {
+    LossCount sut;
+    for (const auto& [sequence, tick] : samples) sut.step(sequence, tick);
+    EXPECT_EQ(sut.received(), static_cast<std::int64_t>(samples.size())) << what;
+    EXPECT_EQ(sut.lost(), lost) << what;
+    EXPECT_EQ(sut.not_sent(), not_sent) << what;
+  }
 }
 
 TEST(LossCountTest, TheEndOfAnInstanceIsNoLossAndHidesNone) {
@@ -40,30 +41,6 @@ TEST(LossCountTest, TheEndOfAnInstanceIsNoLossAndHidesNone) {
   sut.end_instance(7);
   sut.step(8, -1);
   EXPECT_EQ(sut.lost(), 2);
-}
-
-TEST(LossCountTest, ATickThatNeverReachedTheWritersDdsIsLostTooAndToldApart) {
-  LossCount sut;
-  sut.step(1, 10);
-  sut.step(2, 14);
-  EXPECT_EQ(sut.lost(), 3);
-  EXPECT_EQ(sut.not_sent(), 3);
-}
-
-TEST(LossCountTest, WithoutTicksTheSequenceAloneTells) {
-  LossCount sut;
-  sut.step(1, -1);
-  sut.step(6, -1);
-  EXPECT_EQ(sut.lost(), 4);
-  EXPECT_EQ(sut.not_sent(), 0);
-}
-
-TEST(LossCountTest, AnotherSessionOfTheSameWriterIsNoLoss) {
-  LossCount sut;
-  sut.step(1, 9000);
-  sut.step(2, 0);
-  sut.step(3, 1);
-  EXPECT_EQ(sut.lost(), 0);
 }
 
 // The writer drops ticks before DDS, the network drops sequence numbers: the count of each is

@@ -29,9 +29,7 @@ TEST(ByteCountTest, BytesHaveADecimalPrefixFrom1000On) {
   EXPECT_EQ(byte_count(5'600'000), "5.6 MB");
   EXPECT_EQ(byte_count(7'000'000'000), "7 GB");
   EXPECT_EQ(byte_count(8'250'000'000'000), "8.25 TB");
-}
-
-TEST(ByteCountTest, ANumberThatRoundsTo1000HasTheNextPrefix) {
+  // One that rounds to 1000 has the next prefix.
   EXPECT_EQ(byte_count(999'499), "999 kB");
   EXPECT_EQ(byte_count(999'999), "1 MB");
   EXPECT_EQ(byte_count(999'999'999), "1 GB");
@@ -54,28 +52,17 @@ TEST(ByteCountTest, EveryCountReadsBackToHalfAPercentWithoutAnExponent) {
   }
 }
 
-TEST(LossLineTest, AWholeRecordingHasNone) {
+TEST(LossLineTest, AWholeRecordingHasNoneAndAnOpenOrCutOneSaysWhatIsLost) {
+  const Damage open = damage(DamageKind::kNoFooter, 9, 0);
   EXPECT_EQ(loss_line("a.mcap", std::vector<Damage>{}, 12, false), "");
-}
-
-TEST(LossLineTest, ARecordingInWritingIsReportedAsSuchWhateverItsEnd) {
-  const std::string line =
-      loss_line("a.mcap", {damage(DamageKind::kCutOff, 5, 100)}, std::nullopt, true);
-  EXPECT_THAT(line, AllOf(HasSubstr("a.mcap: "), HasSubstr("written"), Not(HasSubstr("100"))));
-}
-
-TEST(LossLineTest, AFileThatWasNotClosedLosesNothing) {
-  const std::string line = loss_line("a.mcap", {damage(DamageKind::kNoFooter, 5, 0)}, 12, false);
-  EXPECT_THAT(line, AllOf(HasSubstr("a.mcap: "), HasSubstr("closed"), Not(HasSubstr("byte")),
-                          HasSubstr("12 messages")));
-}
-
-TEST(LossLineTest, ACutOffFileStatesTheSumOfItsLostBytes) {
-  const std::string line = loss_line(
-      "a.mcap", {damage(DamageKind::kNoFooter, 9, 0), damage(DamageKind::kCutOff, 5, 1500)}, 12,
-      false);
-  EXPECT_THAT(line, AllOf(HasSubstr("cut off"), HasSubstr("1.5 kB lost"), HasSubstr("12 messages"),
-                          Not(HasSubstr("place"))));
+  EXPECT_THAT(loss_line("a.mcap", {damage(DamageKind::kCutOff, 5, 100)}, std::nullopt, true),
+              AllOf(HasSubstr("a.mcap: "), HasSubstr("written"), Not(HasSubstr("100"))));
+  EXPECT_THAT(loss_line("a.mcap", {open}, 12, false),
+              AllOf(HasSubstr("a.mcap: "), HasSubstr("closed"), Not(HasSubstr("byte")),
+                    HasSubstr("12 messages")));
+  EXPECT_THAT(loss_line("a.mcap", {open, damage(DamageKind::kCutOff, 5, 1500)}, 12, false),
+              AllOf(HasSubstr("cut off"), HasSubstr("1.5 kB lost"), HasSubstr("12 messages"),
+                    Not(HasSubstr("place"))));
 }
 
 TEST(LossLineTest, ADamagedFileNamesTheWorstPlaceAndTheNumberOfPlaces) {
@@ -89,10 +76,7 @@ TEST(LossLineTest, ADamagedFileNamesTheWorstPlaceAndTheNumberOfPlaces) {
                           HasSubstr("stillhand verify"), Not(HasSubstr("messages"))));
   EXPECT_THAT(loss_line("a.mcap", {damage(DamageKind::kBadChunk, 100, 20)}, 3, false),
               AllOf(HasSubstr("1 place;"), HasSubstr("3 messages")));
-}
-
-// A footer that lost bytes is damage, not an open end.
-TEST(LossLineTest, ALostFooterIsADamagedPlace) {
+  // A footer that lost bytes is damage, not an open end.
   EXPECT_THAT(loss_line("a.mcap", {damage(DamageKind::kNoFooter, 100, 20, "footer")}, 3, false),
               AllOf(HasSubstr("1 place"), HasSubstr("20 bytes lost")));
 }

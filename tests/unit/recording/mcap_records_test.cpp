@@ -49,65 +49,39 @@ void expect_strict(const Bytes& content, const Record& want, Parse parse) {
   EXPECT_EQ(later->extra_bytes, 7u);
 }
 
-TEST(McapRecordsTest, ASchemaReadsBackAndEveryPrefixOfItIsRefused) {
+TEST(McapRecordsTest, DefinitionsAndMetadataReadBackAndEveryPrefixOfThemIsRefused) {
   const Schema schema{65535, "a::B", "omgidl", some_bytes(300)};
-  const Bytes content = content_of([&](Bytes& out) { put_schema(out, schema); }, Opcode::kSchema);
-  expect_strict(content, schema, parse_schema);
-}
-
-TEST(McapRecordsTest, AChannelReadsBackAndEveryPrefixOfItIsRefused) {
+  expect_strict(content_of([&](Bytes& out) { put_schema(out, schema); }, Opcode::kSchema), schema,
+                parse_schema);
   const Channel channel{7, 65535, "stillhand/sensed", "cdr", {{"writer", "1.f"}, {"", ""}}};
-  const Bytes content =
-      content_of([&](Bytes& out) { put_channel(out, channel); }, Opcode::kChannel);
-  expect_strict(content, channel, parse_channel);
-}
-
-TEST(McapRecordsTest, MetadataReadsBackAndEveryPrefixOfItIsRefused) {
+  expect_strict(content_of([&](Bytes& out) { put_channel(out, channel); }, Opcode::kChannel),
+                channel, parse_channel);
   const Metadata metadata{"stillhand.session", {{"seed", "1"}, {"host", std::string(500, 'h')}}};
-  const Bytes content = content_of(
-      [&](Bytes& out) { put_metadata(out, metadata.name, metadata.texts); }, Opcode::kMetadata);
-  expect_strict(content, metadata, parse_metadata);
+  expect_strict(content_of([&](Bytes& out) { put_metadata(out, metadata.name, metadata.texts); },
+                           Opcode::kMetadata),
+                metadata, parse_metadata);
 }
 
-TEST(McapRecordsTest, StatisticsReadBackAndEveryPrefixOfThemIsRefused) {
+TEST(McapRecordsTest, StatisticsAndAChunkIndexReadBackAndEveryPrefixOfThemIsRefused) {
   const Statistics statistics{
       UINT64_MAX, 65535, 1, 2, 3, UINT32_MAX, 4, UINT64_MAX, {{0, 1}, {65535, UINT64_MAX}}};
-  const Bytes content =
+  const Bytes counts =
       content_of([&](Bytes& out) { put_statistics(out, statistics); }, Opcode::kStatistics);
-  EXPECT_EQ(content.size(), 46u + 2 * 10u);  // FORMAT.md: 8+2+4*4+2*8, map length 4, 10 an entry
-  EXPECT_EQ(parse_statistics(content), statistics);
-  EXPECT_EQ(parse_statistics(with_tail(content, 3)), statistics);
-  for (std::size_t length = 0; length < content.size(); ++length) {
-    EXPECT_FALSE(parse_statistics(std::span(content).first(length)).has_value()) << length;
+  EXPECT_EQ(counts.size(), 46u + 2 * 10u);  // FORMAT.md: 8+2+4*4+2*8, map length 4, 10 an entry
+  EXPECT_EQ(parse_statistics(counts), statistics);
+  EXPECT_EQ(parse_statistics(with_tail(counts, 3)), statistics);
+  const auto bytes_of = [](const ChunkIndex& index) {
+    return content_of([&](Bytes& out) { put_chunk_index(out, index); }, Opcode::kChunkIndex);
+  };
+  const Bytes place = bytes_of({1, UINT64_MAX, 3, 4, {{2, 5}, {9, 6}}, 7, "zstd", 8, 9});
+  EXPECT_EQ(place.size(), 64u + 2 * 10u + 4u);  // 4*8, map length 4, 8, text length 4, 2*8
+  EXPECT_EQ(bytes_of(parse_chunk_index(place).value()), place);
+  EXPECT_EQ(parse_chunk_index(place)->uncompressed_size, 9u);
+  for (std::size_t length = 0; length < counts.size(); ++length) {
+    EXPECT_FALSE(parse_statistics(std::span(counts).first(length)).has_value()) << length;
   }
-}
-
-TEST(McapRecordsTest, AChunkIndexReadsBackAndEveryPrefixOfItIsRefused) {
-  ChunkIndex index;
-  index.start_time_ns = 1;
-  index.end_time_ns = UINT64_MAX;
-  index.offset = 3;
-  index.length = 4;
-  index.message_index_offsets = {{2, 5}, {9, 6}};
-  index.message_index_length = 7;
-  index.compression = "zstd";
-  index.compressed_size = 8;
-  index.uncompressed_size = 9;
-  const Bytes content =
-      content_of([&](Bytes& out) { put_chunk_index(out, index); }, Opcode::kChunkIndex);
-  const auto sut = parse_chunk_index(content);
-  ASSERT_TRUE(sut.has_value());
-  EXPECT_EQ(sut->start_time_ns, 1u);
-  EXPECT_EQ(sut->end_time_ns, UINT64_MAX);
-  EXPECT_EQ(sut->offset, 3u);
-  EXPECT_EQ(sut->length, 4u);
-  EXPECT_EQ(sut->message_index_offsets, index.message_index_offsets);
-  EXPECT_EQ(sut->message_index_length, 7u);
-  EXPECT_EQ(sut->compression, "zstd");
-  EXPECT_EQ(sut->compressed_size, 8u);
-  EXPECT_EQ(sut->uncompressed_size, 9u);
-  for (std::size_t length = 0; length < content.size(); ++length) {
-    EXPECT_FALSE(parse_chunk_index(std::span(content).first(length)).has_value()) << length;
+  for (std::size_t length = 0; length < place.size(); ++length) {
+    EXPECT_FALSE(parse_chunk_index(std::span(place).first(length)).has_value()) << length;
   }
 }
 

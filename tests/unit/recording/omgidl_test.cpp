@@ -144,6 +144,11 @@ TEST(IdlSchemaTest, LengthsAreComputedAsWrittenOrRefused) {
   EXPECT_EQ(length_of("n*n"), 49u);
   EXPECT_EQ(length_of("4294967295"), 4294967295u);
   EXPECT_EQ(length_of("65537*65535"), 4294967295u);
+  const auto nested = [](std::size_t depth) {
+    return std::string(depth, '(') + "5" + std::string(depth, ')');
+  };
+  EXPECT_EQ(length_of(nested(64)), 5u);
+  EXPECT_THROW((void)length_of(nested(65)), ConfigError);
   for (const char* wrong : {"4294967296",
                             "4294967295+1",
                             "4294967295*4294967295",

@@ -39,18 +39,15 @@ TEST(PlayRateTest, StepsUpAndDownEndAtTheLimits) {
   EXPECT_EQ(PlayRate{100}.slower(), PlayRate{100});
 }
 
-TEST(PlayClockTest, AtRateOneTimeRunsAsItDid) {
+TEST(PlayClockTest, AtRateOneTimeRunsAsItDidAndATenthTakesTenTimesAsLong) {
   PlayClock sut(kNow, kStart, {});
   EXPECT_EQ(sut.due(kStart), kNow);
   EXPECT_EQ(sut.due(kStart + 1), kNow + 1);
   EXPECT_EQ(sut.recorded_at(kNow + 5'000'000'000), kStart + 5'000'000'000);
-}
-
-TEST(PlayClockTest, ATenthTakesTenTimesAsLongToTheNanosecond) {
-  PlayClock sut(kNow, kStart, {100});
-  EXPECT_EQ(sut.due(kStart + 1), kNow + 10);
-  EXPECT_EQ(sut.recorded_at(kNow + 9), kStart);
-  EXPECT_EQ(sut.recorded_at(kNow + 10), kStart + 1);
+  PlayClock tenth(kNow, kStart, {100});
+  EXPECT_EQ(tenth.due(kStart + 1), kNow + 10);
+  EXPECT_EQ(tenth.recorded_at(kNow + 9), kStart);
+  EXPECT_EQ(tenth.recorded_at(kNow + 10), kStart + 1);
 }
 
 // A year at rate 100 is 3.2e18 ns recorded: the product needs more than 64 bits, and a double would

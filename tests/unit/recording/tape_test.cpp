@@ -2,7 +2,7 @@
 // Real files in a folder of the test's own.
 #include "services/bus/recording/tape.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -14,6 +14,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/core/recording/mcap/mcap_reader.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/support/recorded_file.hpp"
 #include "tests/support/wait.hpp"
 
 namespace stillhand::recording::tape_test {
@@ -49,13 +50,8 @@ class TapeTest : public testing::Test {
     McapReader reader(file);
     EXPECT_TRUE(reader.indexed()) << path;
     std::vector<std::uint32_t> found;
-    EXPECT_TRUE(reader
-                    .for_each_message({},
-                                      [&](const MessageView& message) {
-                                        found.push_back(message.sequence);
-                                        return true;
-                                      })
-                    .ok());
+    for (const auto& message : tests::messages_of(reader)) found.push_back(message.sequence);
+    EXPECT_TRUE(reader.status().ok());
     EXPECT_TRUE(reader.damage().empty());
     return found;
   }
@@ -130,15 +126,7 @@ TEST_F(TapeTest, WhatWasPutIsInTheFileAfterASync) {
   ASSERT_TRUE(sut.sync());
   FileSource file(slow.path);
   McapReader reader(file);
-  std::size_t found = 0;
-  EXPECT_TRUE(reader
-                  .for_each_message({},
-                                    [&](const MessageView&) {
-                                      ++found;
-                                      return true;
-                                    })
-                  .ok());
-  EXPECT_EQ(found, 100u);
+  EXPECT_EQ(tests::messages_of(reader).size(), 100u);
 }
 
 TEST_F(TapeTest, AClockThatIsSetStartsNoNewFile) {

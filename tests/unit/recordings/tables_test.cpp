@@ -102,17 +102,13 @@ class CsvTablesTest : public FolderTest {
 };
 
 TEST_F(CsvTablesTest, TimesHaveEveryNanosecondAndTheirSign) {
-  const std::vector<std::int64_t> times_ns{0,
-                                           1,
-                                           -1,
-                                           999'999'999,
-                                           -1'000'000'001,
-                                           std::numeric_limits<std::int64_t>::max(),
-                                           std::numeric_limits<std::int64_t>::min()};
-  const std::string text = written({}, std::vector<std::vector<Cell>>(times_ns.size()), times_ns);
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const std::vector<std::int64_t> times_ns{0,     1,         -1, 999'999'999, -1'000'000'001,
+                                           kMost, -kMost - 1};
   const std::vector<std::string> want{
       "0.000000000",  "0.000000001",          "-0.000000001",         "0.999999999",
       "-1.000000001", "9223372036.854775807", "-9223372036.854775808"};
+  const std::string text = written({}, std::vector<std::vector<Cell>>(times_ns.size()), times_ns);
   for (std::size_t i = 0; i < want.size(); ++i) EXPECT_EQ(line(text, i + 1), want[i] + ",1,2,3");
 }
 
