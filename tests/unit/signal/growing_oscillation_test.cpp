@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <vector>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/units.hpp"
@@ -88,6 +89,57 @@ TEST(GrowingOscillationTest, ADyingOrASmallOscillationIsNone) {
     }
     EXPECT_FALSE(small.found()) << f;
     EXPECT_FALSE(dying.found()) << f;
+  }
+}
+
+struct Wave {
+  double floors;  // amplitude
+  Tick ticks = 62;
+};
+
+// Half waves after eight of 0.3 floors, and three of those behind them.  The band-pass changes an
+// amplitude by 0.07 floors and a length by 3 ticks, far less than they are from the bounds.
+// @return the tick of the finding, -1: none
+Tick found_in(GrowingOscillation& sut, std::vector<Wave> waves) {
+  waves.insert(waves.begin(), 8, Wave{0.3});
+  waves.insert(waves.end(), 3, Wave{0.3});
+  double side = OscillationLimits{}.floor_rad;
+  Tick tick = 0;
+  for (const Wave& wave : waves) {
+    side = -side;
+    for (Tick n = 0; n < wave.ticks; ++n, ++tick) {
+      const double turns = 0.5 * static_cast<double>(n) / static_cast<double>(wave.ticks);
+      if (sut.step(side * wave.floors * std::sin(kTwoPi * turns))) return tick;
+    }
+  }
+  return -1;
+}
+
+// Eqs. VH-7 and VH-8 word by word, with a growth of 1.2 and a ceiling of two floors.
+TEST(GrowingOscillationTest, EveryConditionIsNeeded) {
+  const struct {
+    const char* what;
+    std::vector<Wave> waves;
+    bool found;
+  } cases[] = {
+      {"grows three times", {{0.8}, {1.1}, {1.6}}, true},
+      {"the newest does not grow", {{0.45}, {0.65}, {0.95}, {1.05}}, false},
+      {"the one before does not", {{0.8}, {1.1}, {1.05}, {1.5}}, false},
+      {"the third does not", {{1.0}, {0.9}, {1.3}, {1.8}}, false},
+      {"lengths 80 over 62", {{0.8}, {1.1, 80}, {1.6}}, true},
+      {"lengths 110 over 62: not regular", {{0.8}, {1.1, 110}, {1.6}}, false},
+      {"12.5 Hz: above the band", {{0.8, 40}, {1.1, 40}, {1.6, 40}, {1.9, 40}}, false},
+      {"three above the ceiling", {{2.4}, {2.4}, {2.4}}, true},
+      {"two above the ceiling", {{2.4}, {2.4}}, false},
+      {"one between below the ceiling", {{2.4}, {1.2}, {2.4}}, false},
+  };
+  for (const auto& [what, waves, found] : cases) {
+    GrowingOscillation sut{OscillationLimits{.growth = 1.2}};
+    const Tick first = found_in(sut, waves);
+    EXPECT_EQ(first >= 0, found) << what;
+    sut.reset();
+    EXPECT_EQ(sut.frequency_hz() + sut.amplitude_rad() + sut.last_amplitude_rad(), 0.0);
+    EXPECT_EQ(found_in(sut, waves), first) << what << ", again";
   }
 }
 
