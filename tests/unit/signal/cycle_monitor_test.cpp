@@ -25,22 +25,24 @@ TEST(CycleMonitorTest, TellsByHowManyMicrosecondsASampleIsLate) {
   // Due at 1000 us, tolerated to 1500 us, arrived at 1749 us.
   EXPECT_EQ(sut.step(1, kMs, 1'749'000).late_by_us, 249);
   EXPECT_EQ(sut.misses(), 1);
+  // By default a period of 1 ms, and one further period that the reader absorbs.
+  CycleMonitor usual;
+  usual.step(0, 0, 0);
+  usual.step(1, kMs, 2 * kMs);
+  EXPECT_EQ(usual.misses(), 0);
+  EXPECT_EQ(usual.step(2, 2 * kMs, 4 * kMs + 1000).late_by_us, 1);
 }
 
-TEST(CycleMonitorTest, CountsEachLostTick) {
-  CycleMonitor sut;
-  sut.step(10, 0, 0);
-  EXPECT_EQ(sut.step(14, 0, 4 * kMs).lost, 3);
-  EXPECT_EQ(sut.lost(), 3);
-}
-
-TEST(CycleMonitorTest, IgnoresATickThatIsNotNewer) {
+TEST(CycleMonitorTest, CountsEachLostTickAndIgnoresOneThatIsNotNewer) {
   CycleMonitor sut;
   sut.step(10, 0, 0);
   EXPECT_EQ(sut.step(10, 0, kMs).lost, 0);
   EXPECT_EQ(sut.step(9, 0, kMs).lost, 0);
   EXPECT_EQ(sut.step(11, 0, 2 * kMs).lost, 0);
   EXPECT_EQ(sut.lost(), 0);
+  EXPECT_EQ(sut.worst_interval_us(), 2000) << "from the first sample of tick 10";
+  EXPECT_EQ(sut.step(15, 0, 4 * kMs).lost, 3);
+  EXPECT_EQ(sut.lost(), 3);
 }
 
 TEST(CycleMonitorTest, LatencyPercentilesAreWithinABinOfTheTruth) {
@@ -53,6 +55,10 @@ TEST(CycleMonitorTest, LatencyPercentilesAreWithinABinOfTheTruth) {
     EXPECT_LE(static_cast<double>(sut.latency_us(share)), truth * 1.126) << share;
   }
   EXPECT_EQ(sut.max_latency_us(), 10'000);
+  // Below 16 us a bin holds one value: of 0 .. 15 us once each, n are shorter than n us.
+  CycleMonitor fast;
+  for (Tick n = 0; n < 16; ++n) fast.step(n, n * kMs, n * kMs + n * 1000);
+  for (int n = 0; n < 16; ++n) EXPECT_EQ(fast.latency_us(n / 16.0), n);
 }
 
 TEST(CycleMonitorTest, TakesAnyLatencyWithoutLeavingItsBins) {
@@ -60,7 +66,8 @@ TEST(CycleMonitorTest, TakesAnyLatencyWithoutLeavingItsBins) {
   sut.step(0, 0, -5 * kMs);  // clocks of two hosts
   sut.step(1, 0, INT64_MAX / 2);
   EXPECT_EQ(sut.samples(), 2);
-  EXPECT_GE(sut.latency_us(0.99), 0);
+  EXPECT_EQ(sut.latency_us(0.0), 0);
+  EXPECT_EQ(sut.latency_us(0.99), (1 << 26) - 1) << "192 bins, 8 an octave, end at 2^26 us";
 }
 
 }  // namespace

@@ -48,6 +48,12 @@ TEST(DifferenceModelTest, StabilityIsDecidedAtTheUnitCircle) {
     EXPECT_FALSE(is_stable(with_poles(1.0, angle_rad))) << angle_rad;
     EXPECT_FALSE(is_stable(with_poles(1.001, angle_rad))) << angle_rad;
   }
+  // Three real poles: the largest decides.
+  for (const double pole : {0.99, -0.99, 1.01, -1.01}) {
+    const auto below = product({1.0, -pole}, product({1.0, 0.5}, {1.0, -0.3}));
+    EXPECT_EQ(is_stable({50.0, {1.0, 0.0, 0.0, 0.0}, below}), std::abs(pole) < 1.0) << pole;
+  }
+  EXPECT_FALSE(is_stable({50.0, {1.0, 0.0}, {1.0, -1.0}})) << "an integrator";
   EXPECT_FALSE(is_stable({50.0, {1.0, 0.0}, {1.0, std::nan("")}}));
   EXPECT_TRUE(is_stable({50.0, {1.0}, {1.0}}));
 }
@@ -59,6 +65,8 @@ TEST(DifferenceModelTest, PolesAreTheRootsOfTheDenominator) {
     EXPECT_NEAR(std::abs(pole), 0.9, 1e-13);
     EXPECT_NEAR(std::abs(std::arg(pole)), 0.7, 1e-13);
   }
+  EXPECT_EQ(poles({50.0, {1.0, 0.0}, {1.0, -0.5}}), (std::vector<std::complex<double>>{0.5}));
+  EXPECT_TRUE(poles({50.0, {1.0}, {1.0}}).empty());
 }
 
 TEST(DifferenceModelTest, MalformedModelsAreSeen) {

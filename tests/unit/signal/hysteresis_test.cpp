@@ -62,12 +62,6 @@ TEST(StopOperatorTest, WhatItTakesOffIsPlay) {
   }
 }
 
-TEST(StopOperatorTest, WithinTheLimitItIsASpring) {
-  const auto sut = answers(stop_operator, swings(2, 40, 0.99));
-  const auto z = swings(2, 40, 0.99);
-  for (std::size_t n = 0; n < z.size(); ++n) ASSERT_NEAR(sut[n], z[n], 1e-15 * 100.0);
-}
-
 // Along one way w tends to the sign with e^-|dz|: from rest w = 1 - e^-z.
 TEST(DahlOperatorTest, FromRestItRisesExponentially) {
   const std::vector<double> z{0.0, 0.25, 0.5, 1.5, 4.0};

@@ -32,9 +32,6 @@ TEST(SlowWayTest, ItBeginsWithTheWholeDistanceAtRestAndEndsSlowlyWithNothing) {
     EXPECT_EQ(after.acceleration_m_s2, 0.0);
     EXPECT_GE(sut.length_s(), SlowWay::kShortest_s);
   }
-}
-
-TEST(SlowWayTest, AFartherPlaceTakesLonger) {
   SlowWay sut;
   sut.begin(0.15);
   // 15/8 d/V, to a tick.
