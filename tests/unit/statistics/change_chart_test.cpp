@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "services/core/signal/random.hpp"
 
@@ -71,6 +72,27 @@ TEST(ChangeChartTest, FindsAChangeWhenItBeganAndHowLargeItIs) {
     return;
   }
   FAIL() << "not found in 40 vectors";
+}
+
+// Four vectors are learnt, mean 0 and scatter 2 I; eight wait.  At a distance x the thirteenth then
+// has |z|^2 = 2 ln(1 + 4/5 x^2/2) (ST-22) and alarms where |z| is beyond h + 1.5 (ST-23).  At
+// R = e^5 h = -3.16 + 3.45 + 2.7075 = 2.9975 (ST-24).
+TEST(ChangeChartTest, TheFirstVectorThatIsJudgedAlarmsBeyondTheBound) {
+  ChangeChart sut(std::exp(5.0));
+  EXPECT_NEAR(sut.threshold(), 2.9975, 1e-12);
+  const double bound = std::sqrt((std::exp(0.5 * 4.4975 * 4.4975) - 1.0) / 0.4);
+  for (const auto& [before, x, changed] :
+       {std::tuple{12, 0.999 * bound, false}, {12, 1.001 * bound, true}, {11, 1e9, false}}) {
+    sut.restart();
+    for (int n = 0; n < before; ++n) {
+      const double side = n % 2 == 0 ? 1.0 : -1.0;
+      sut.step(n % 4 < 2 ? Eigen::Vector2d(side, 0.0) : Eigen::Vector2d(0.0, side));
+    }
+    const ChangeChart::Step step = sut.step({0.0, x});
+    EXPECT_EQ(step.changed, changed) << before << " " << x;
+    EXPECT_EQ(step.ago, changed ? 1 : 0);
+    EXPECT_NEAR((step.by - Eigen::Vector2d(0.0, changed ? x : 0.0)).norm(), 0.0, 1e-9);
+  }
 }
 
 TEST(ChangeChartTest, ValuesThatNeverDifferAreNoChange) {

@@ -19,7 +19,8 @@ using Eigen::MatrixXd;
 using support::agrees;
 using support::golden_trials;
 
-void expect_equal(const MultivariateTest& sut, const golden::EffectRow& want) {
+void expect_equal(const char* effect, const MultivariateTest& sut, const golden::EffectRow& want) {
+  SCOPED_TRACE(effect);
   EXPECT_TRUE(agrees(sut.wilks_lambda, want.lambda));
   EXPECT_TRUE(agrees(sut.wilks.f, want.wilks_f));
   EXPECT_TRUE(agrees(sut.wilks.numerator_df, want.wilks_1));
@@ -42,19 +43,10 @@ TEST(ManovaTest, EqualsR) {
         golden_trials(want.set).part(want.subjects, want.conditions, want.replicates, want.metrics),
         {want.subjects, want.conditions, want.replicates});
     EXPECT_EQ(sut.error_df, want.error_df);
-    {
-      SCOPED_TRACE("condition");
-      expect_equal(sut.condition, want.condition);
-    }
-    {
-      SCOPED_TRACE("subject");
-      expect_equal(sut.subject, want.subject);
-    }
+    expect_equal("condition", sut.condition, want.condition);
+    expect_equal("subject", sut.subject, want.subject);
     ASSERT_EQ(sut.interaction.has_value(), want.interaction.has_value());
-    if (want.interaction) {
-      SCOPED_TRACE("interaction");
-      expect_equal(*sut.interaction, *want.interaction);
-    }
+    if (want.interaction) expect_equal("interaction", *sut.interaction, *want.interaction);
   }
 }
 
@@ -142,9 +134,11 @@ TEST(ManovaTest, ResidualsThatCannotBeAnErrorAreRefused) {
     const Eigen::Index subject = i / 3, condition = i % 3;
     additive(i, 1) = 0.1 * static_cast<double>(subject) + 0.3 * static_cast<double>(condition);
   }
-  EXPECT_EQ(
-      message_of(additive, {12, 3, 1}),
-      "manova.metric[1]: got residuals that are zero within rounding, want residuals that vary");
+  for (const double unit : {1.0, 1e-6}) {
+    EXPECT_EQ(
+        message_of(additive * unit, {12, 3, 1}),
+        "manova.metric[1]: got residuals that are zero within rounding, want residuals that vary");
+  }
   MatrixXd constant = golden_trials(0).values;
   constant.col(2).setConstant(0.7);
   EXPECT_NE(message_of(constant, {12, 3, 1}).find("manova.metric[2]"), std::string::npos);

@@ -40,15 +40,13 @@ TEST(PowerTest, SubjectsNeededEqualR) {
   }
 }
 
-TEST(PowerTest, WithoutAnEffectThePowerIsTheLevel) {
+TEST(PowerTest, WithoutAnEffectThePowerIsTheLevelAndItIsEven) {
   for (const double alpha : {0.05, 1e-3, 1e-9}) {
     EXPECT_EQ(paired_t_power(0.0, 12, alpha), alpha);
     // Power is even in dz: 1e-8 changes it by (dz t)^2 n of its value at most, 1e-11 here.
     EXPECT_TRUE(agrees(paired_t_power(1e-8, 12, alpha), alpha));
   }
-}
-
-TEST(PowerTest, SignOfTheEffectDoesNotMatter) {
+  // Nor does its sign matter.
   EXPECT_EQ(paired_t_power(-0.6, 12), paired_t_power(0.6, 12));
   EXPECT_EQ(subjects_for_power(-0.6, 0.9), subjects_for_power(0.6, 0.9));
 }
