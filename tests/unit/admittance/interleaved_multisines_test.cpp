@@ -55,6 +55,9 @@ TEST(InterleavedMultisinesTest, LinesAreOddRiseInTurnAndSpanTheBand) {
     if (i == 0) continue;
     EXPECT_LT(sut.motion.components()[i - 1].harmonic, sut.force.components()[i].harmonic);
   }
+  // 1, 2.52, 6.35 and 16 cycles: odd, not above, and 2 apart.
+  const ExcitationConfig few{.period_s = 10.0, .lowest_hz = 0.1, .highest_hz = 1.6, .lines = 2};
+  EXPECT_EQ(interleaved_harmonics(few), (std::vector<std::int64_t>{1, 3, 5, 15}));
 }
 
 // Eq. AD-3, at a rate at which the peaks between the samples matter.
@@ -95,6 +98,11 @@ TEST(InterleavedMultisinesTest, AmplitudesFollowTheShape) {
     const double want = f_hz < 0.5 ? f_hz / 0.5 : f_hz > 5.0 ? 25.0 / (f_hz * f_hz) : 1.0;
     EXPECT_NEAR(c.amplitude_m_s2 / flat, want, 1e-12) << f_hz;
   }
+  // The default of the platform below 0.5 Hz: the same displacement, so that A goes with f^2.
+  const auto& slow = sut.motion.components();
+  ASSERT_LT(slow[1].harmonic, 10);
+  const auto ratio = static_cast<double>(slow[1].harmonic) / static_cast<double>(slow[0].harmonic);
+  EXPECT_NEAR(slow[1].amplitude_m_s2 / slow[0].amplitude_m_s2, ratio * ratio, 1e-12);
 }
 
 TEST(InterleavedMultisinesTest, TheSeedGivesThePhases) {

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/rig_record.hpp"
 
@@ -42,16 +44,24 @@ rig::RigConfig linear_hand() {
   return config;
 }
 
-TEST(RelationTest, TheMedianOfAnEvenNumberOfLinesIsBetweenTheTwoInTheMiddle) {
-  std::vector<LineResponse> moved(4);
-  for (std::size_t k = 0; k < moved.size(); ++k) {
-    moved[k].frequency_hz = static_cast<double>(k);
-    moved[k].response = 1.0;
+// Eq. AD-16 by hand: mismatches 0, 0.1, 0.2 and 0.3, relative variances that sum up to 0.01.
+TEST(RelationTest, MismatchesTheirCirclesAndMediansFollowTheEquation) {
+  std::vector<LineResponse> moved, held, per_force;
+  for (int k = 0; k < 4; ++k) {
+    const double size = 1.0 + 0.1 * k;
+    moved.push_back({1.0 * k, size, 0.004 * size * size});
+    held.push_back({1.0 * k, 2.0, 0.0035 * 4.0});
+    per_force.push_back({1.0 * k, 0.5, 0.0025 * 0.25});
   }
-  const std::vector<LineResponse> held = moved;
-  for (std::size_t k = 0; k < moved.size(); ++k) moved[k].response += 0.1 * static_cast<double>(k);
-  // Mismatches 0, 0.1, 0.2 and 0.3; a rounding error of the quotient.
-  EXPECT_NEAR(test_relation(moved, held, held, 8).median_mismatch, 0.15, 1e-12);
+  const RelationTest sut = test_relation(moved, held, per_force, 8);
+  // 0.05^(-1/8) = 1.454215: circles of 0.19062 (1 + M), so that 0.3 alone is beyond its own.
+  const double circle = std::sqrt(0.01 * 8.0 * 0.454215);
+  EXPECT_EQ(sut.lines[2].line.frequency_hz, 2.0);
+  EXPECT_NEAR(sut.lines[2].line.variance, 0.01 * 1.2 * 1.2, 1e-12);
+  EXPECT_NEAR(sut.lines[2].line.radius95, 1.2 * circle, 1e-6);
+  EXPECT_EQ(sut.share_within, 0.75);
+  EXPECT_NEAR(sut.median_mismatch, 0.15, 1e-12);
+  EXPECT_NEAR(sut.median_radius, 1.15 * circle, 1e-6);
 }
 
 // A linear arm that does the same on the peg: 95 % of 12 circles, which are wider than needed (the

@@ -9,7 +9,11 @@ namespace stillhand::admittance::session_excitation_test {
 namespace {
 
 TEST(SessionExcitationTest, FillsTheBandWithAsManyLinesAsItHasRoomFor) {
-  EXPECT_EQ(session_excitation({20.0, 1}).lines, 20);
+  const ExcitationConfig sut = session_excitation({40.0, 7, true});
+  EXPECT_EQ(sut.lines, 20);
+  EXPECT_EQ(sut.lowest_hz, 0.05);
+  EXPECT_EQ(sut.seed, 7);
+  EXPECT_TRUE(sut.swapped);
   const ExcitationConfig brief = session_excitation({3.0, 1});
   EXPECT_EQ(brief.lowest_hz, 1.0 / 3.0);
   EXPECT_LT(brief.lines, 20);
@@ -41,7 +45,10 @@ TEST(SessionExcitationTest, MotionOfATrialHasTheLinesOfThePeriod) {
 }
 
 TEST(SessionExcitationTest, RefusesAPeriodOutOfRange) {
-  EXPECT_THROW(session_excitation({0.5, 1}), ConfigError);
+  for (const double period_s : {1.9, 201.0}) {
+    EXPECT_THROW(session_excitation({period_s, 1}), ConfigError);
+  }
+  for (const double period_s : {2.0, 200.0}) EXPECT_NO_THROW(session_excitation({period_s, 1}));
 }
 
 }  // namespace
