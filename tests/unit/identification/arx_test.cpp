@@ -123,6 +123,9 @@ TEST(ArxTest, PooledRecordsGiveOneModelOfAllTheirSamples) {
   EXPECT_EQ(fit_pooled({factor_arx(record, 4)}).order(), 4);
   EXPECT_NEAR(fit_pooled({factor_arx(record, 4)}).denominator[1],
               least_squares(record, 4).denominator[1], tolerance);
+  // Order 4: nine parameters and four samples before the first equation, one equation to spare.
+  EXPECT_NO_THROW(least_squares(part(record, 0, 14), 4));
+  EXPECT_THROW(least_squares(part(record, 0, 13), 4), ConfigError);
 }
 
 TEST(ArxTest, RecordsOfAnotherOrderOrRateAreNotPooled) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/core/contract/config_error.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification::excitation_check_test {
@@ -33,11 +34,15 @@ TEST(ExcitationTest, ThePapersMotionSuffices) {
   EXPECT_NEAR(sut.acceleration_rms_m_s2, 1.6, 0.01);
 }
 
-TEST(ExcitationTest, EachSinusoidCountsTwo) {
+TEST(ExcitationTest, EachSinusoidCountsTwoAndWhiteNoiseTheMost) {
+  EXPECT_EQ(of(support::white_noise(3000, 1.0, 4)).persistent_order, 25);
   EXPECT_EQ(of(sines({2.0})).persistent_order, 2);
   EXPECT_EQ(of(sines({1.0, 3.0, 6.0})).persistent_order, 6);
-  EXPECT_FALSE(of(sines({1.0, 3.0, 6.0})).sufficient);
-  // Nine parameters of order 4 need nine components: five sinusoids give ten.
+  // Nine parameters of order 4 need nine components: four sinusoids give eight, five ten.
+  const auto eight = sines({1.0, 3.0, 6.0, 9.0});
+  EXPECT_FALSE(of(eight).sufficient);
+  EXPECT_THROW(require_excitation(support::record_of(support::body_like_model(), eight), 4),
+               ConfigError);
   EXPECT_TRUE(of(sines({1.0, 3.0, 6.0, 9.0, 14.0})).sufficient);
 }
 
@@ -47,10 +52,15 @@ TEST(ExcitationTest, VerdictSaysWhatIsMissing) {
   EXPECT_NE(of(support::white_noise(3000, 0.01, 3)).verdict.find("no excitation"),
             std::string::npos);
   EXPECT_EQ(of(support::white_noise(3000, 1.0, 3)).verdict, "sufficient");
-}
-
-TEST(ExcitationTest, WhiteNoiseReachesTheLargestOrder) {
-  EXPECT_EQ(of(support::white_noise(3000, 1.0, 4)).persistent_order, 25);
+  // 0.05 m/s^2 RMS are needed; ten samples for each of nine parameters, and 25 lags.
+  for (const double rms : {0.0499, 0.0501}) {
+    auto a = sines({1.0, 3.0, 6.0, 9.0, 14.0});
+    for (double& x : a) x *= rms / std::sqrt(2.5);
+    EXPECT_EQ(of(a).sufficient, rms > 0.05);
+  }
+  EXPECT_EQ(of(support::white_noise(114, 1.0, 3)).verdict,
+            "recording: got 114 samples, want 115 or more for order 4");
+  EXPECT_TRUE(of(support::white_noise(115, 1.0, 3)).sufficient);
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ TEST(PaperPreprocessingTest, UnusableRecordsAreRefused) {
   EXPECT_THROW(preprocessed({100.0, x, broken}), ConfigError);
   EXPECT_THROW(preprocessed({100.0, x, {1.0}}), ConfigError);
   EXPECT_THROW(preprocessed({2000.0, x, x}), ConfigError);
+  EXPECT_NO_THROW(preprocessed({1000.0, x, x})) << "exactly a second";
   EXPECT_THROW(preprocessed({std::nan(""), x, x}), ConfigError);
 }
 

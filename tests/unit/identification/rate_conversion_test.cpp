@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/identification/rate_conversion.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <cstdio>
@@ -10,6 +10,7 @@
 #include "services/core/contract/tick.hpp"
 #include "services/core/rig/parts/body_response.hpp"
 #include "tests/support/feedthrough_records.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/rms_share.hpp"
 
 namespace stillhand::identification::rate_conversion_test {
@@ -44,6 +45,8 @@ TEST(RateConversionTest, KeepsTheResponseOfABodyLikeModel) {
   EXPECT_LT(sut.max_error, 0.02);
   EXPECT_NEAR(largest_error(body_like_model(), sut.model, 0.0, 10.0), sut.max_error,
               0.05 * sut.max_error + 1e-6);
+  EXPECT_NEAR(largest_error(body_like_model(), sut.model, 0.7, 4.0), sut.excited_error,
+              0.05 * sut.excited_error + 1e-6);
 }
 
 TEST(RateConversionTest, RealModelsOfLowOrderAreHit) {
@@ -55,6 +58,16 @@ TEST(RateConversionTest, RealModelsOfLowOrderAreHit) {
   // A gain alone passes unchanged, but for rounding.
   const RateConversion gain = to_control_rate({50.0, {-3.2}, {1.0}});
   EXPECT_NEAR(gain.model.numerator[0], -3.2, 1e-12);
+  EXPECT_NEAR(gain.peak_gain, 3.2, 1e-12);
+}
+
+// Eq. ID-10: a pole that takes 20 s to 1 %, next to a zero that leaves it 1 % of the response, is
+// moved to 4 s.
+TEST(RateConversionTest, ASlowerPoleIsMovedToFourSeconds) {
+  const double pole = std::exp(-std::log(100.0) / (20.0 * 50.0));
+  const double zero = 1.0 - 1.01 * (1.0 - pole);
+  const RateConversion sut = to_control_rate({50.0, {-3.2, 3.2 * zero}, {1.0, -pole}});
+  EXPECT_NEAR(-sut.model.denominator[1], std::exp(-std::log(100.0) / 4000.0), 1e-8);
 }
 
 TEST(RateConversionTest, PolesThatNoisePutsNearNyquistDoNoHarm) {
@@ -90,7 +103,9 @@ TEST(RateConversionTest, OrdersBeyondWhatDoublePrecisionCarriesAreLowered) {
 }
 
 TEST(RateConversionTest, AConversionThatMissesItsBoundIsRefused) {
-  EXPECT_THROW(to_control_rate(body_like_model(), {0.7, 4.0, 10.0, 1e-9}), ConfigError);
+  // METHOD, "Accuracy and speed": 0.37 % to 10 Hz; a message has tenths.
+  EXPECT_THAT(support::refusal([] { to_control_rate(body_like_model(), {0.7, 4.0, 10.0, 0.002}); }),
+              testing::HasSubstr("an error of 0.40 % of the peak gain, want at most 0.20 %"));
 }
 
 TEST(RateConversionTest, UnusableModelsAreRefused) {
