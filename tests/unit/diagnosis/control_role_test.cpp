@@ -102,11 +102,8 @@ TEST(ControlRoleTest, ARoleCarriesItsNumbers) {
   EXPECT_EQ(path({"coupled_input", "lagged", {"a_x"}, {{"lag", "s", 0.3}}, {1.0}}).lag_s, 0.3);
   EXPECT_EQ(path({"coupled_input", "static", {"a_x"}, {}, {1.0}}).lag_s, 0.0);
   EXPECT_TRUE(path({"coupled_input", "through the body", {"a_x"}, {}, {1.0}}).through_body);
-  const Effect stop{"hysteresis",
-                    "elastic-plastic, beside the body",
-                    {"theta"},
-                    {{"threshold", "rad", 0.4}},
-                    {0.3, -0.1}};
+  const Effect stop = made::effect_of("hysteresis", "elastic-plastic, beside the body", {"theta"},
+                                      {{"threshold", "rad", 0.4}}, {0.3, -0.1});
   const auto memory = std::get<Hysteresis>(effect_kind("hysteresis").body_role(stop));
   EXPECT_EQ(memory.operation, signal::HysteresisOperator::kStop);
   EXPECT_EQ(memory.threshold, 0.4);

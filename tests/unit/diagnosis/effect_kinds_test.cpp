@@ -94,23 +94,15 @@ TEST(EffectKindsTest, SomeKindsComeOnceAlone) {
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
   const Effect once[] = {
       {"delay", "of the input", {}, {{"delay", "s", 0.02, -0.1, 0.5}}, {}},
-      {"clock_drift",
-       "of the output",
-       {},
-       {{"drift", "us/s", 10.0, -2e4, 2e4}, constant("reference_time", "s", 30.0)},
-       {}},
+      made::effect_of("clock_drift", "of the output", {},
+                      {{"drift", "us/s", 10.0, -2e4, 2e4}, constant("reference_time", "s", 30.0)}),
       {"input_saturation", "hard", {"u"}, {{"limit", "V", 2.0, 0.1, 9.0}}, {}},
       {"output_saturation", "hard", {}, {{"limit", "N", 9.0, 0.1, 9.0}}, {}},
-      {"transients",
-       "isolated bursts",
-       {},
-       {{"begin_1", "s", 3.0, 0.0, 60.0, false}, {"end_1", "s", 3.5, 0.0, 60.0, false}},
-       {}},
-      {"nonlinear_stiffness",
-       "cubic of the output",
-       {},
-       {{"threshold", "N", 5.0, 0.1, 9.0}},
-       {-1e-6, 0.0}}};
+      made::effect_of(
+          "transients", "isolated bursts", {},
+          {{"begin_1", "s", 3.0, 0.0, 60.0, false}, {"end_1", "s", 3.5, 0.0, 60.0, false}}),
+      made::effect_of("nonlinear_stiffness", "cubic of the output", {},
+                      {{"threshold", "N", 5.0, 0.1, 9.0}}, {-1e-6, 0.0})};
   for (const Effect& effect : once) {
     const Model model = made::model_of(body, {effect});
     const Screening screening(model, signals, blocks, impulse_response);

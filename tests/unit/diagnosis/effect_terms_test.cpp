@@ -82,11 +82,8 @@ TEST(EffectTermsTest, ARippleRepeatsWithThePosition) {
   constexpr double kPerRad = 2.5;  // a period of 0.4 rad
   std::vector<double> theta(kCount);
   for (std::size_t n = 0; n < kCount; ++n) theta[n] = 0.1 * static_cast<double>(n % 40);
-  const auto sut = columns_of({"position_ripple",
-                               "two harmonics",
-                               {"theta"},
-                               {{"spatial_frequency", "1/rad", kPerRad, 2.0, 3.0}},
-                               {}},
+  const auto sut = columns_of(made::effect_of("position_ripple", "two harmonics", {"theta"},
+                                              {{"spatial_frequency", "1/rad", kPerRad, 2.0, 3.0}}),
                               signals_of(theta));
   ASSERT_EQ(sut.size(), 4u);
   for (std::size_t n = 0; n + 4 < 40; ++n) {
@@ -141,12 +138,10 @@ TEST(EffectTermsTest, PlayOfAPositionIsCountedFromItsCentre) {
   std::vector<double> theta(kCount, 0.0);
   const double some[] = {-1.25, -0.25, 0.0, 0.75, 2.0};
   std::copy(std::begin(some), std::end(some), theta.begin());
-  const auto sut = columns_of({"dead_zone",
-                               "beside the body",
-                               {"theta"},
-                               {{"half_width", "rad", 0.5}, constant("centre", "rad", 0.25)},
-                               {}},
-                              signals_of(theta));
+  const auto sut =
+      columns_of(made::effect_of("dead_zone", "beside the body", {"theta"},
+                                 {{"half_width", "rad", 0.5}, constant("centre", "rad", 0.25)}),
+                 signals_of(theta));
   ASSERT_EQ(sut.size(), 1u);
   EXPECT_THAT(std::vector<double>(sut[0].begin(), sut[0].begin() + 5),
               ElementsAre(-1.0, 0.0, 0.0, 0.0, 1.25));
@@ -154,11 +149,8 @@ TEST(EffectTermsTest, PlayOfAPositionIsCountedFromItsCentre) {
 
 TEST(EffectTermsTest, ACubicSpringHasALinearPart) {
   const Signals signals = wandering();
-  const auto sut = columns_of({"nonlinear_stiffness",
-                               "cubic, beside the body",
-                               {"theta"},
-                               {constant("centre", "rad", 0.25)},
-                               {}},
+  const auto sut = columns_of(made::effect_of("nonlinear_stiffness", "cubic, beside the body",
+                                              {"theta"}, {constant("centre", "rad", 0.25)}),
                               signals);
   ASSERT_EQ(sut.size(), 2u);
   for (std::size_t n = 0; n < kCount; ++n) {
@@ -185,12 +177,10 @@ TEST(EffectTermsTest, AnEvenPartIsASquareOrASizeByItsForm) {
 
 TEST(EffectTermsTest, AProductIsThatOfTheDeviationsFromTheCentres) {
   const Signals signals = wandering();
-  const auto sut = columns_of({"bilinear",
-                               "beside the body",
-                               {"theta", "temp"},
-                               {constant("centre_1", "rad", 0.5), constant("centre_2", "", -2.0)},
-                               {}},
-                              signals);
+  const auto sut = columns_of(
+      made::effect_of("bilinear", "beside the body", {"theta", "temp"},
+                      {constant("centre_1", "rad", 0.5), constant("centre_2", "", -2.0)}),
+      signals);
   ASSERT_EQ(sut.size(), 1u);
   for (std::size_t n = 0; n < kCount; ++n) {
     ASSERT_EQ(sut[0][n],
@@ -202,11 +192,8 @@ TEST(EffectTermsTest, AProductIsThatOfTheDeviationsFromTheCentres) {
 TEST(EffectTermsTest, HysteresisOfAPositionHasALinearPartUnlessItIsTheInput) {
   const Signals signals = wandering();
   const auto of_channel = [&](const char* channel) {
-    return columns_of({"hysteresis",
-                       "elastic-plastic, beside the body",
-                       {channel},
-                       {{"threshold", "rad", 0.5, 0.0, 9.0}},
-                       {}},
+    return columns_of(made::effect_of("hysteresis", "elastic-plastic, beside the body", {channel},
+                                      {{"threshold", "rad", 0.5, 0.0, 9.0}}),
                       signals);
   };
   const auto sut = of_channel("theta");
@@ -280,27 +267,14 @@ TEST(EffectTermsTest, ASmoothSignIsHalfwayAtItsTransition) {
   rate[0] = 0.25;
   rate[1] = -0.25;
   rate[2] = 1e9;
-  const auto sut = columns_of({"coulomb_friction",
-                               "smooth sign, beside the body",
-                               {"theta"},
-                               {{"transition_rate", "rad/s", 0.25, 0.0, 9.0}},
-                               {}},
-                              signals_of(rate));
+  const auto sut =
+      columns_of(made::effect_of("coulomb_friction", "smooth sign, beside the body", {"theta"},
+                                 {{"transition_rate", "rad/s", 0.25, 0.0, 9.0}}),
+                 signals_of(rate));
   EXPECT_DOUBLE_EQ(sut[0][0], std::tanh(1.0));
   EXPECT_DOUBLE_EQ(sut[0][1], -std::tanh(1.0));
   EXPECT_EQ(sut[0][2], 1.0);
   EXPECT_EQ(sut[0][3], 0.0);
-}
-
-// A rate that crosses zero between two samples has a share of both signs; at rest there is none.
-TEST(EffectTermsTest, ASharpSignHasAShareOfBothWhereItCrosses) {
-  std::vector<double> rate(kCount, 0.0);
-  for (std::size_t n = 0; n < 200; ++n) rate[n] = n % 2 == 0 ? 1.0 : -1.0;
-  const auto sut =
-      columns_of({"coulomb_friction", "sign, beside the body", {"theta"}, {}, {}}, signals_of(rate))
-          .at(0);
-  for (std::size_t n = 1; n + 1 < kCut; ++n) ASSERT_EQ(sut[n], rate[n]) << n;
-  for (std::size_t n = 201; n < kCount; ++n) ASSERT_EQ(sut[n], 0.0) << n;
 }
 
 }  // namespace stillhand::diagnosis::effect_terms_test

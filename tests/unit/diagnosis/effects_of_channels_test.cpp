@@ -46,12 +46,11 @@ TEST(EffectsOfChannelsTest, AStaticPathFromAnotherChannel) {
 TEST(EffectsOfChannelsTest, APathThatLags) {
   const double keep = std::exp(-0.01 / 0.15);
   const auto slow = made::answer({1.0 - keep}, {1.0, -keep}, kV);
-  Planted sut =
-      planted("coupled_input", "lagged", answer_and([&](std::size_t n) { return 0.5 * slow[n]; }),
-              {{"roll", "rad", kV}}, {"roll"});
   // Lags of 0.05, 0.2 and 0.8 s are tried.
-  sut.wanted = {{0, 0.15, 0.051, 0.005}};
-  expect_proposed(sut);
+  expect_proposed(
+      planted("coupled_input", "lagged", answer_and([&](std::size_t n) { return 0.5 * slow[n]; }),
+              {{"roll", "rad", kV}}, {"roll"}),
+      {{0, 0.15, 0.051, 0.005}});
 }
 
 TEST(EffectsOfChannelsTest, APathThroughTheBody) {
@@ -85,29 +84,29 @@ TEST(EffectsOfChannelsTest, FrictionWithTheSignOfARate) {
   expect_proposed(implied);
 }
 
-// Rates of -1, 1, 1, -3 on straight lines: half a sample on each side of the third it is positive
-// up to 0, then negative for as long; the ends have one side.
+// Rates of -1, 1, 1, -3, 0, 0, 0 on straight lines: half a sample on each side of the third it is
+// positive up to 0, then negative for as long; the first has one side, and rest has no sign.
 TEST(EffectsOfChannelsTest, TheSignOfARateIsItsMeanAroundTheSample) {
-  const Signals signals(made::measurement_of({{"u", "V", {1.0, 0.0, 1.0, 0.0}},
-                                              {"v", "rad/s", {-1.0, 1.0, 1.0, -3.0}},
-                                              {"y", "N", {0.0, 1.0, 0.0, 1.0}}}),
-                        {"u"}, "y");
+  const auto x = made::white(7, 1);
+  const Signals signals(
+      made::measurement_of(
+          {{"u", "V", x}, {"v", "rad/s", {-1.0, 1.0, 1.0, -3.0, 0.0, 0.0, 0.0}}, {"y", "N", x}}),
+      {"u"}, "y");
   Columns sut;
   effect_kind("coulomb_friction")
       .terms({"coulomb_friction", "sign, beside the body", {"v"}, {}, {1.0}}, signals, {}, sut);
   ASSERT_EQ(sut.size(), 1u);
-  EXPECT_EQ(sut[0], (std::vector<double>{-1.0, 1.0, 0.5, -1.0}));
+  EXPECT_EQ(sut[0], (std::vector<double>{-1.0, 1.0, 0.5, -1.0, -0.5, 0.0, 0.0}));
 }
 
 TEST(EffectsOfChannelsTest, FrictionThatSetsInSmoothly) {
   const auto omega = rate_of(kTheta);
   const double transition = 0.3 * made::rms_of(omega);
-  Planted sut =
+  expect_proposed(
       planted("coulomb_friction", "smooth sign, beside the body",
               answer_and([&](std::size_t n) { return -0.2 * std::tanh(omega[n] / transition); }),
-              {{"omega", "rad/s", omega}}, {"omega"});
-  sut.wanted = {{0, transition, 0.51 * transition, 0.03 * transition}};
-  expect_proposed(sut);
+              {{"omega", "rad/s", omega}}, {"omega"}),
+      {{0, transition, 0.51 * transition, 0.03 * transition}});
 }
 
 TEST(EffectsOfChannelsTest, ARateThatNeverTurnsHasNoFrictionToShow) {
@@ -127,17 +126,15 @@ TEST(EffectsOfChannelsTest, ARippleOverAPosition) {
     return std::sin(2.0 * std::numbers::pi * harmonic * per_rad * kTheta[n] + 0.5);
   };
   const double range = 6.0;  // [rad] of the angle, about: lines are 1/range wide
-  Planted one = planted("position_ripple", "one harmonic",
-                        answer_and([&](std::size_t n) { return 0.2 * ripple(n, 1); }),
-                        {{"theta", "rad", kTheta}}, {"theta"});
-  one.wanted = {{0, per_rad, 0.5 / range, 0.002}};
-  expect_proposed(one);
-  Planted two =
-      planted("position_ripple", "two harmonics",
-              answer_and([&](std::size_t n) { return 0.2 * ripple(n, 1) + 0.1 * ripple(n, 2); }),
-              {{"theta", "rad", kTheta}}, {"theta"});
-  two.wanted = {{0, per_rad, 0.5 / range, 0.002}};
-  expect_proposed(two);
+  expect_proposed(planted("position_ripple", "one harmonic",
+                          answer_and([&](std::size_t n) { return 0.2 * ripple(n, 1); }),
+                          {{"theta", "rad", kTheta}}, {"theta"}),
+                  {{0, per_rad, 0.5 / range, 0.002}});
+  expect_proposed(planted("position_ripple", "two harmonics", answer_and([&](std::size_t n) {
+                            return 0.2 * ripple(n, 1) + 0.1 * ripple(n, 2);
+                          }),
+                          {{"theta", "rad", kTheta}}, {"theta"}),
+                  {{0, per_rad, 0.5 / range, 0.002}});
 }
 
 // The model has a ripple with two harmonics; a line at either must not be proposed again.  Lines
@@ -155,11 +152,9 @@ TEST(EffectsOfChannelsTest, ARippleThatSharesAHarmonicIsNotProposedAgain) {
   const EffectKind& sut = effect_kind("position_ripple");
   ASSERT_FALSE(sut.proposed(of.screening).empty());
   Model model = of.baseline.model;
-  model.effects.push_back({"position_ripple",
-                           "two harmonics",
-                           {"theta"},
-                           {{"spatial_frequency", "1/rad", per_rad, per_rad, per_rad}},
-                           {0.0, 0.0, 0.0, 0.0}});
+  model.effects.push_back(made::effect_of(
+      "position_ripple", "two harmonics", {"theta"},
+      {{"spatial_frequency", "1/rad", per_rad, per_rad, per_rad}}, {0.0, 0.0, 0.0, 0.0}));
   const Screening again(model, of.signals, of.blocks, of.impulse_response);
   for (const Proposal& proposal : sut.proposed(again)) {
     const double frequency = proposal.effect.value(0);
@@ -185,10 +180,9 @@ TEST(EffectsOfChannelsTest, AGainThatFollowsAChannel) {
   const auto slow = made::ride(kCount, 6, 0.05, 0.3);
   auto y = made::answer(kBody, kU);
   for (std::size_t n = 0; n < kCount; ++n) y[n] *= 1.0 + 0.2 * slow[n];
-  Planted sut = planted("bilinear", "gain of the body", y, {{"grip", "N", slow}}, {"grip"});
   // The centre is the channel's mean, about which the gain is 1.
-  sut.wanted = {{0, 0.2, 0.02, 0.004}};
-  expect_proposed(sut);
+  expect_proposed(planted("bilinear", "gain of the body", y, {{"grip", "N", slow}}, {"grip"}),
+                  {{0, 0.2, 0.02, 0.004}});
 }
 
 TEST(EffectsOfChannelsTest, AnEvenPartInAChannel) {
@@ -210,8 +204,7 @@ TEST(EffectsOfChannelsTest, PlayInAPosition) {
                         }),
                         {{"theta", "rad", kTheta}}, {"theta"});
   // Half-widths of 0.4 and 0.8 standard deviations are tried on either side.
-  sut.wanted = {{0, 0.5, 0.31, 0.02}};
-  expect_proposed(sut);
+  expect_proposed(sut, {{0, 0.5, 0.31, 0.02}});
 }
 
 // w follows theta/0.4 and yields at +-1.
@@ -225,17 +218,15 @@ TEST(EffectsOfChannelsTest, HysteresisOfAPosition) {
     const double towards = dz >= 0.0 ? 1.0 : -1.0;
     dahl[n] = towards + (dahl[n - 1] - towards) * std::exp(-std::abs(dz));
   }
-  Planted plastic = planted("hysteresis", "elastic-plastic, beside the body",
-                            answer_and([&](std::size_t n) { return 0.3 * w[n]; }),
-                            {{"theta", "rad", kTheta}}, {"theta"});
   // 0.2, 0.5 and 1 standard deviations are tried.
-  plastic.wanted = {{0, 0.4, 0.21, 0.02}};
-  expect_proposed(plastic);
-  Planted smooth = planted("hysteresis", "smooth, beside the body",
-                           answer_and([&](std::size_t n) { return 0.3 * dahl[n]; }),
-                           {{"theta", "rad", kTheta}}, {"theta"});
-  smooth.wanted = {{0, 0.4, 0.21, 0.02}};
-  expect_proposed(smooth);
+  expect_proposed(planted("hysteresis", "elastic-plastic, beside the body",
+                          answer_and([&](std::size_t n) { return 0.3 * w[n]; }),
+                          {{"theta", "rad", kTheta}}, {"theta"}),
+                  {{0, 0.4, 0.21, 0.02}});
+  expect_proposed(planted("hysteresis", "smooth, beside the body",
+                          answer_and([&](std::size_t n) { return 0.3 * dahl[n]; }),
+                          {{"theta", "rad", kTheta}}, {"theta"}),
+                  {{0, 0.4, 0.21, 0.02}});
 }
 
 }  // namespace stillhand::diagnosis::effects_of_channels_test

@@ -53,8 +53,7 @@ TEST(EffectsOfPathsTest, ADelay) {
   const auto late = sampled([](double t_s) { return many_sines(t_s - 0.1134); });
   Planted sut = planted("delay", "of the input", made::answer(body, late), sampled(many_sines));
   sut.order = 4;
-  sut.wanted = {{0, 0.1134, 0.015, 0.015}};
-  expect_proposed(sut);
+  expect_proposed(sut, {{0, 0.1134, 0.015, 0.015}});
 }
 
 // 800 us/s over 60 s: 24 ms each way; the reference time is the middle of the record.
@@ -65,8 +64,7 @@ TEST(EffectsOfPathsTest, ClocksThatRunApart) {
                           })),
                           sampled(many_sines));
     // 500 and 1000 us/s are tried on both sides, and none.
-    sut.wanted = {{0, drift_us_s, 250.0, 3.0}, {1, 29.995, 1e-9, 1e-9}};
-    expect_proposed(sut);
+    expect_proposed(sut, {{0, drift_us_s, 250.0, 3.0}, {1, 29.995, 1e-9, 1e-9}});
   }
 }
 
@@ -74,19 +72,17 @@ TEST(EffectsOfPathsTest, AModeBeyondTheBodysOrder) {
   auto y = answer(kU);
   const auto ringing = made::answer({0.2, -0.1}, made::mode(6.0, 0.05), kU);
   for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.3 * ringing[n];
-  Planted sut = planted("resonance", "beside the body", y);
   // 24 frequencies from 0.3 to 40 Hz, a factor of 1.24 apart; dampings 0.03, 0.1, 0.3.
-  sut.wanted = {{0, 6.0, 0.8, 0.02}, {1, 0.05, 0.051, 0.003}};
-  expect_proposed(sut);
+  expect_proposed(planted("resonance", "beside the body", y),
+                  {{0, 6.0, 0.8, 0.02}, {1, 0.05, 0.051, 0.003}});
 }
 
 // The standard deviation is 1: limits of 0.3 to 2.5 are tried.
 TEST(EffectsOfPathsTest, AnInputThatIsLimited) {
-  Planted hard =
+  expect_proposed(
       planted("input_saturation", "hard",
-              answer(mapped(kU, [](double u) { return std::clamp(u, -1.0, 1.0); })), kU, {"u"});
-  hard.wanted = {{0, 1.0, 0.3, 0.01}};
-  expect_proposed(hard);
+              answer(mapped(kU, [](double u) { return std::clamp(u, -1.0, 1.0); })), kU, {"u"}),
+      {{0, 1.0, 0.3, 0.01}});
 }
 
 TEST(EffectsOfPathsTest, AnInputThatBends) {
@@ -103,9 +99,8 @@ TEST(EffectsOfPathsTest, AnOutputThatIsLimited) {
   const double limit = 1.2 * made::rms_of(y);
   std::vector<double> clipped = y;
   for (double& value : clipped) value = std::clamp(value, -limit, limit);
-  Planted sut = planted("output_saturation", "hard", clipped);
-  sut.wanted = {{0, limit, 0.1 * limit, 0.01 * limit}};
-  expect_proposed(sut);
+  expect_proposed(planted("output_saturation", "hard", clipped),
+                  {{0, limit, 0.1 * limit, 0.01 * limit}});
 }
 
 TEST(EffectsOfPathsTest, AnOutputThatEndsEarlierOnOneSide) {
@@ -114,9 +109,8 @@ TEST(EffectsOfPathsTest, AnOutputThatEndsEarlierOnOneSide) {
   const double down = -1.0 * made::rms_of(y);
   std::vector<double> clipped = y;
   for (double& value : clipped) value = std::clamp(value, down, up);
-  Planted sut = planted("output_saturation", "hard, two limits", clipped);
-  sut.wanted = {{0, up, 0.1 * up, 0.01 * up}, {1, down, -0.1 * down, -0.01 * down}};
-  expect_proposed(sut);
+  expect_proposed(planted("output_saturation", "hard, two limits", clipped),
+                  {{0, up, 0.1 * up, 0.01 * up}, {1, down, -0.1 * down, -0.01 * down}});
 }
 
 TEST(EffectsOfPathsTest, AnOutputThatBends) {
@@ -124,37 +118,31 @@ TEST(EffectsOfPathsTest, AnOutputThatBends) {
   const double limit = 2.0 * made::rms_of(y);
   std::vector<double> bent = y;
   for (double& value : bent) value = limit * std::tanh(value / limit);
-  Planted sut = planted("output_saturation", "soft", bent);
-  sut.wanted = {{0, limit, 0.3 * limit, 0.02 * limit}};
-  expect_proposed(sut);
+  expect_proposed(planted("output_saturation", "soft", bent),
+                  {{0, limit, 0.3 * limit, 0.02 * limit}});
 }
 
 TEST(EffectsOfPathsTest, PlayAtTheInputAndAtTheOutput) {
-  Planted input =
+  expect_proposed(
       planted("dead_zone", "at the input",
-              answer(mapped(kU, [](double u) { return u - std::clamp(u, -0.3, 0.3); })), kU, {"u"});
-  input.wanted = {{0, 0.3, 0.15, 0.01}};
-  expect_proposed(input);
+              answer(mapped(kU, [](double u) { return u - std::clamp(u, -0.3, 0.3); })), kU, {"u"}),
+      {{0, 0.3, 0.15, 0.01}});
   const auto y = answer(kU);
   const double width = 0.4 * made::rms_of(y);
   std::vector<double> lost = y;
   for (double& value : lost) value -= std::clamp(value, -width, width);
-  Planted output = planted("dead_zone", "at the output", lost);
-  output.wanted = {{0, width, 0.3 * width, 0.03 * width}};
-  expect_proposed(output);
+  expect_proposed(planted("dead_zone", "at the output", lost),
+                  {{0, width, 0.3 * width, 0.03 * width}});
 }
 
 TEST(EffectsOfPathsTest, SlopesThatDifferWithTheSign) {
-  Planted input =
+  expect_proposed(
       planted("asymmetry", "slopes at the input",
-              answer(mapped(kU, [](double u) { return u + 0.15 * std::abs(u); })), kU, {"u"});
-  input.wanted = {{0, 0.15, 0.02, 0.005}};
-  expect_proposed(input);
+              answer(mapped(kU, [](double u) { return u + 0.15 * std::abs(u); })), kU, {"u"}),
+      {{0, 0.15, 0.02, 0.005}});
   std::vector<double> y = answer(kU);
   for (double& value : y) value += 0.15 * std::abs(value);
-  Planted output = planted("asymmetry", "slopes at the output", y);
-  output.wanted = {{0, 0.15, 0.02, 0.005}};
-  expect_proposed(output);
+  expect_proposed(planted("asymmetry", "slopes at the output", y), {{0, 0.15, 0.02, 0.005}});
 }
 
 // A heater: its power goes with the square of the voltage.  An input of both signs: the linear body
@@ -165,10 +153,9 @@ TEST(EffectsOfPathsTest, AnInputThatActsByItsSquare) {
     for (double& value : u) value += level;
     double largest = 0.0;
     for (const double value : u) largest = std::max(largest, std::abs(value));
-    Planted sut = planted("asymmetry", "square at the input",
-                          answer(mapped(u, [](double x) { return x * x; })), u, {"u"});
-    sut.wanted = {{0, 1.0, 0.61, 0.005}, {1, largest, 1e-12, 1e-12}};
-    expect_proposed(sut);
+    expect_proposed(planted("asymmetry", "square at the input",
+                            answer(mapped(u, [](double x) { return x * x; })), u, {"u"}),
+                    {{0, 1.0, 0.61, 0.005}, {1, largest, 1e-12, 1e-12}});
   }
 }
 
@@ -204,9 +191,8 @@ TEST(EffectsOfPathsTest, AnOutputThatHardens) {
   std::vector<double> y = answer(kU);
   const double kappa = 0.03 / std::pow(made::rms_of(y), 2);
   for (double& value : y) value += kappa * value * value * value;
-  Planted sut = planted("nonlinear_stiffness", "at the output", y);
-  sut.wanted = {{0, kappa, 0.5 * kappa, 0.03 * kappa}};
-  expect_proposed(sut);
+  expect_proposed(planted("nonlinear_stiffness", "at the output", y),
+                  {{0, kappa, 0.5 * kappa, 0.03 * kappa}});
 }
 
 }  // namespace stillhand::diagnosis::effects_of_paths_test

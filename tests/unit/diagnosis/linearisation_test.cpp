@@ -110,46 +110,31 @@ TEST(LinearisationTest, EveryStageAgrees) {
   };
   const Effect whole[] = {
       {"delay", "of the input", {}, one(0.0237), {}},
-      {"clock_drift",
-       "of the output",
-       {},
-       {{"drift", "us/s", 900.0, -2e4, 2e4}, constant("reference_time", "s", 3.0)},
-       {}},
+      made::effect_of("clock_drift", "of the output", {},
+                      {{"drift", "us/s", 900.0, -2e4, 2e4}, constant("reference_time", "s", 3.0)}),
       {"input_saturation", "soft", {"u"}, one(1.1), {}},
       {"nonlinear_stiffness", "bent of the output", {}, one(2.0), {-0.001, 0.003, 0.01, 0.02}},
       {"hysteresis", "smooth of the output", {}, one(1.0), {-0.001, 0.003, 0.01, 0.02}},
-      {"asymmetry",
-       "square inside the body",
-       {},
-       {},
-       {0.002, 0.003, 0.01, -0.02, 0.01, 0.004, 0.01, -0.03, 0.02, 0.1, -0.0005, 0.002, 0.005,
-        0.01}},
-      {"bilinear",
-       "gain of the body",
-       {"v"},
-       {{"sensitivity", "1/V", 0.3, -1.0, 1.0}, constant("centre", "V", 0.1)},
-       {}},
-      {"time_varying_gain",
-       "sinusoidal",
-       {},
-       {{"cycles_per_record", "-", 1.7, 0.5, 12.0},
-        {"sine", "-", 0.2, -3.0, 3.0},
-        {"cosine", "-", -0.1, -3.0, 3.0}},
-       {}},
+      made::effect_of("asymmetry", "square inside the body", {}, {},
+                      {0.002, 0.003, 0.01, -0.02, 0.01, 0.004, 0.01, -0.03, 0.02, 0.1, -0.0005,
+                       0.002, 0.005, 0.01}),
+      made::effect_of("bilinear", "gain of the body", {"v"},
+                      {{"sensitivity", "1/V", 0.3, -1.0, 1.0}, constant("centre", "V", 0.1)}),
+      made::effect_of("time_varying_gain", "sinusoidal", {},
+                      {{"cycles_per_record", "-", 1.7, 0.5, 12.0},
+                       {"sine", "-", 0.2, -3.0, 3.0},
+                       {"cosine", "-", -0.1, -3.0, 3.0}}),
       {"coupled_input", "static", {"v"}, {}, {0.6}},
       {"coupled_input", "lagged", {"v"}, one(0.2), {0.6}},
       {"coupled_input", "through the body", {"v"}, {}, {0.02, 0.1, -0.2, 0.1, 0.05}},
-      {"resonance",
-       "beside the body",
-       {},
-       {{"frequency", "Hz", 4.3, 0.1, 40.0}, {"damping_ratio", "-", 0.06, 0.003, 0.95}},
-       {0.2, -0.1, 0.15, 0.05}},
+      made::effect_of(
+          "resonance", "beside the body", {},
+          {{"frequency", "Hz", 4.3, 0.1, 40.0}, {"damping_ratio", "-", 0.06, 0.003, 0.95}},
+          {0.2, -0.1, 0.15, 0.05}),
       {"output_saturation", "soft", {}, one(4.0), {}},
-      {"transients",
-       "isolated bursts",
-       {},
-       {{"begin_1", "s", 1.3, 0.0, 9.0, false}, {"end_1", "s", 1.9, 0.0, 9.0, false}},
-       {}},
+      made::effect_of(
+          "transients", "isolated bursts", {},
+          {{"begin_1", "s", 1.3, 0.0, 9.0, false}, {"end_1", "s", 1.9, 0.0, 9.0, false}}),
   };
   for (const Effect& effect : whole) {
     SCOPED_TRACE(effect.kind + ", " + effect.form);
@@ -164,19 +149,14 @@ TEST(LinearisationTest, StagesTogetherAgree) {
   const Signals signals = signals_of();
   std::vector<Effect> effects{
       {"delay", "of the input", {}, {{"delay", "s", 0.0237, -0.1, 0.5}}, {}},
-      {"bilinear",
-       "gain of the body",
-       {"v"},
-       {{"sensitivity", "1/V", 0.3, -1.0, 1.0}, constant("centre", "V", 0.1)},
-       {}},
+      made::effect_of("bilinear", "gain of the body", {"v"},
+                      {{"sensitivity", "1/V", 0.3, -1.0, 1.0}, constant("centre", "V", 0.1)}),
       {"coupled_input", "through the body", {"v"}, {}, {0.02, 0.1, -0.2, 0.1, 0.05}},
       {"output_saturation", "soft", {}, {{"limit", "N", 4.0, 0.1, 50.0}}, {}}};
   expect_columns_agree(model_with(effects), signals);
-  effects.push_back({"nonlinear_stiffness",
-                     "bent of the output",
-                     {},
-                     {{"threshold", "N", 2.0, 0.1, 9.0}},
-                     {-0.001, 0.003, 0.01, 0.02}});
+  effects.push_back(made::effect_of("nonlinear_stiffness", "bent of the output", {},
+                                    {{"threshold", "N", 2.0, 0.1, 9.0}},
+                                    {-0.001, 0.003, 0.01, 0.02}));
   expect_columns_agree(model_with(effects), signals, kWithFeedback);
 }
 

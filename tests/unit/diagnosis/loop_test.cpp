@@ -19,9 +19,7 @@ Model looped(const char* kind, const char* form, double threshold, double e0) {
 
 // Bit for bit.
 void expect_each_as_alone(const std::vector<Model>& models) {
-  const Signals signals(
-      made::measurement_of({{"u", "V", made::ride(kCount, 1)}, {"y", "N", made::white(kCount, 2)}}),
-      {"u"}, "y");
+  const Signals signals = made::signals_of(made::ride(kCount, 1), made::white(kCount, 2));
   std::vector<ModelRun> together(models.size());
   run_all(models, signals, together);
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -49,9 +47,7 @@ TEST(LoopTest, OneThatRunsAwayLeavesTheOthersAlone) {
   for (const double e0 : {-1e-6, 5.0, 1e-6}) {
     models.push_back(looped("nonlinear_stiffness", "cubic of the output", 0.7, e0));
   }
-  const Signals signals(
-      made::measurement_of({{"u", "V", made::ride(kCount, 1)}, {"y", "N", made::white(kCount, 2)}}),
-      {"u"}, "y");
+  const Signals signals = made::signals_of(made::ride(kCount, 1), made::white(kCount, 2));
   ASSERT_TRUE(free_run(models[0], signals).finite);
   ASSERT_FALSE(free_run(models[1], signals).finite);
   expect_each_as_alone(models);
@@ -66,9 +62,7 @@ TEST(LoopTest, AStopHoldsTheOutputAndForgetsWhatWouldGoBeyond) {
       {{"output_saturation", "stop above", {}, {constant("limit", "N", kLimit)}, {}}});
   sut.body.offset = 0.5;
   const auto u = made::ride(kCount, 1);
-  const Signals signals(made::measurement_of({{"u", "V", u}, {"y", "N", made::white(kCount, 2)}}),
-                        {"u"}, "y");
-  const FreeRun run = free_run(sut, signals);
+  const FreeRun run = free_run(sut, made::signals_of(u, made::white(kCount, 2)));
   const auto& b = sut.body.numerators.front();
   const auto& a = sut.body.denominator;
   std::vector<double> want(kCount, 0.0);
@@ -90,9 +84,8 @@ TEST(LoopTest, AStopHoldsTheOutputAndForgetsWhatWouldGoBeyond) {
 // A level of the input that would hold the output beyond: before the stretch it rests at the stop.
 TEST(LoopTest, AStretchMayBeginAtTheStop) {
   const Body body{{{0.0, 0.1}}, {1.0, -0.9}};
-  const Signals signals(made::measurement_of({{"u", "V", std::vector<double>(kCount, 2.0)},
-                                              {"y", "N", made::white(kCount, 2)}}),
-                        {"u"}, "y");
+  const Signals signals =
+      made::signals_of(std::vector<double>(kCount, 2.0), made::white(kCount, 2));
   const FreeRun run = free_run(
       made::model_of(body,
                      {{"output_saturation", "stop above", {}, {constant("limit", "N", 1.5)}, {}}}),

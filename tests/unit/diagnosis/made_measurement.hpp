@@ -189,6 +189,13 @@ inline Model model_of(Body body, std::vector<Effect> effects = {}) {
   return {kRateHz, {"u"}, "y", "N", std::move(body), std::move(effects)};
 }
 
+/// An effect in a list: what makes it, without a line for each.
+inline Effect effect_of(std::string kind, std::string form, std::vector<std::string> channels,
+                        std::vector<Parameter> parameters, std::vector<double> coefficients = {}) {
+  return {std::move(kind), std::move(form), std::move(channels), std::move(parameters),
+          std::move(coefficients)};
+}
+
 /// A measurement with everything that a proposal looks at; order of the baseline as given.
 struct Studied {
   Studied(const Measurement& measurement, int order)

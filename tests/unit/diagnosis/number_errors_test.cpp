@@ -75,12 +75,10 @@ TEST(NumberErrorsTest, TheyAreWhatRepeatedExperimentsScatterUnderSlowNoise) {
 // c z^3 with z from any numerator N: a larger N and a smaller c are the same model.
 TEST(NumberErrorsTest, ADirectionThatChangesNothingHasNoError) {
   Measurement measurement = made::every_channel(kSamples, 5);
-  Model model = made::model_of(made::two_pole_body(),
-                               {{"nonlinear_stiffness",
-                                 "cubic inside the body",
-                                 {},
-                                 {},
-                                 {0.02, -0.01, 0.005, 0.04, 0.01, 0.0, -0.001, 0.002}}});
+  Model model =
+      made::model_of(made::two_pole_body(),
+                     {made::effect_of("nonlinear_stiffness", "cubic inside the body", {}, {},
+                                      {0.02, -0.01, 0.005, 0.04, 0.01, 0.0, -0.001, 0.002})});
   std::vector<double>& y = measurement.channels.back().values;
   y = free_run(model, Signals(measurement, {"u"}, "y")).prediction;
   const std::vector<double> noise = made::white(kSamples, 9);

@@ -29,13 +29,12 @@ struct Planted {
   Measurement measurement;
   double noise = 0.0;  ///< RMS of what was added last
   int order = 2;       ///< of the baseline
-  std::vector<Wanted> wanted{};
-  double left = 1.1;  ///< RMSE of the joint fit over the noise, at most
+  double left = 1.1;   ///< RMSE of the joint fit over the noise, at most
 };
 
 /// The kind proposes the right form with numbers near the truth, a joint fit from there finds the
 /// numbers and leaves nothing but the noise, and there is a sentence to say it.
-inline void expect_proposed(const Planted& planted) {
+inline void expect_proposed(const Planted& planted, const std::vector<Wanted>& wanted = {}) {
   SCOPED_TRACE(planted.kind + ", " + planted.form);
   const Studied of(planted.measurement, planted.order);
   EXPECT_GT(of.baseline.rmse, 1.5 * planted.noise) << "the baseline swallows what is planted";
@@ -49,7 +48,7 @@ inline void expect_proposed(const Planted& planted) {
   }
   ASSERT_NE(found, nullptr) << proposals.size() << " proposals, none of that form";
   EXPECT_EQ(found->effect.kind, planted.kind);
-  for (const Wanted& each : planted.wanted) {
+  for (const Wanted& each : wanted) {
     EXPECT_NEAR(found->effect.value(each.parameter), each.value, each.proposed_within)
         << found->effect.parameters[each.parameter].name << " as proposed";
   }
@@ -60,7 +59,7 @@ inline void expect_proposed(const Planted& planted) {
   const FitResult fitted = fit(model, of.signals, of.blocks, options);
   ASSERT_TRUE(fitted.finite);
   EXPECT_LT(fitted.rmse, planted.left * planted.noise);
-  for (const Wanted& each : planted.wanted) {
+  for (const Wanted& each : wanted) {
     EXPECT_NEAR(model.effects[0].value(each.parameter), each.value, each.fitted_within)
         << model.effects[0].parameters[each.parameter].name << " as fitted";
   }

@@ -49,26 +49,21 @@ Diagnosis diagnosed(const std::vector<double>& u, const std::vector<double>& y) 
   return diagnose(made::measurement_of({{"u", "V", u}, {"y", "V", y}}), options);
 }
 
-// Two rests, in five of thirty blocks.
-TEST(RestAtALimitTest, ATankThatOverflowsTwiceIsStopped) {
-  const Diagnosis sut = diagnosed(inflow(), overflowing(inflow()));
-  ASSERT_EQ(sut.effects.size(), 1u);
-  EXPECT_EQ(sut.effects[0].effect.kind, "output_saturation");
-  EXPECT_EQ(sut.effects[0].effect.form, "stop above");
-  EXPECT_EQ(sut.effects[0].effect.value(0), kLimit);
-  EXPECT_EQ(sut.effects[0].carried, 1.0);
-}
-
-TEST(RestAtALimitTest, ATankThatRunsDryIsStoppedBelow) {
-  std::vector<double> u = inflow();
-  std::vector<double> y = overflowing(u);
-  for (std::vector<double>* each : {&u, &y}) {
-    for (double& value : *each) value = -value;
+// Two rests, in five of thirty blocks; and the same upside down, a tank that runs dry.
+TEST(RestAtALimitTest, ATankThatOverflowsOrRunsDryTwiceIsStopped) {
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<double> u = inflow();
+    std::vector<double> y = overflowing(u);
+    for (std::vector<double>* each : {&u, &y}) {
+      for (double& value : *each) value *= sign;
+    }
+    const Diagnosis sut = diagnosed(u, y);
+    ASSERT_EQ(sut.effects.size(), 1u);
+    EXPECT_EQ(sut.effects[0].effect.kind, "output_saturation");
+    EXPECT_EQ(sut.effects[0].effect.form, sign > 0.0 ? "stop above" : "stop below");
+    EXPECT_EQ(sut.effects[0].effect.value(0), sign * kLimit);
+    EXPECT_EQ(sut.effects[0].carried, 1.0);
   }
-  const Diagnosis sut = diagnosed(u, y);
-  ASSERT_EQ(sut.effects.size(), 1u);
-  EXPECT_EQ(sut.effects[0].effect.form, "stop below");
-  EXPECT_EQ(sut.effects[0].effect.value(0), -kLimit);
 }
 
 TEST(RestAtALimitTest, ASensorThatEndsIsNoStop) {

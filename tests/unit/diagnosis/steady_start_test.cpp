@@ -94,21 +94,16 @@ TEST(SteadyStartTest, AnOffsetMakesNoTransient) {
   const Effect through{
       "coupled_input", "through the body", {"v"}, {}, {0.02, 0.1, -0.2, 0.1, 0.05}};
   const Effect slow{"coupled_input", "lagged", {"v"}, {{"lag", "s", 3.0, 0.1, 9.0}}, {4.0}};
-  const Effect mode{"resonance",
-                    "beside the body",
-                    {},
-                    {{"frequency", "Hz", 0.5, 0.1, 40.0}, {"damping_ratio", "-", 0.05, 0.003, 0.9}},
-                    {0.2, 0.001}};
-  const Effect spring{"nonlinear_stiffness",
-                      "bent of the output",
-                      {},
-                      {{"threshold", "N", 2.0, 0.1, 9.0}},
-                      {-0.001, 0.003, 0.01, 0.02}};
-  const Effect play{"hysteresis",
-                    "elastic-plastic of the output",
-                    {},
-                    {{"threshold", "N", 2.0, 0.1, 9.0}},
-                    {-0.001, 0.003, 0.01, 0.02}};
+  const Effect mode = made::effect_of(
+      "resonance", "beside the body", {},
+      {{"frequency", "Hz", 0.5, 0.1, 40.0}, {"damping_ratio", "-", 0.05, 0.003, 0.9}},
+      {0.2, 0.001});
+  const Effect spring =
+      made::effect_of("nonlinear_stiffness", "bent of the output", {},
+                      {{"threshold", "N", 2.0, 0.1, 9.0}}, {-0.001, 0.003, 0.01, 0.02});
+  const Effect play =
+      made::effect_of("hysteresis", "elastic-plastic of the output", {},
+                      {{"threshold", "N", 2.0, 0.1, 9.0}}, {-0.001, 0.003, 0.01, 0.02});
   const Signals signals = signals_of(nearly_constant(9.81), nearly_constant(23.0));
   for (const std::vector<Effect>& effects : std::vector<std::vector<Effect>>{
            {}, {through}, {slow}, {mode}, {spring}, {play}, {spring, through}}) {
@@ -124,11 +119,9 @@ TEST(SteadyStartTest, AnOffsetMakesNoTransient) {
 
 // In the steady state a hardening spring holds z = c + g phi(z).
 TEST(SteadyStartTest, ASpringStartsAtItsOwnEquilibrium) {
-  const Effect spring{"nonlinear_stiffness",
-                      "cubic of the output",
-                      {},
-                      {{"threshold", "N", 20.0, 0.1, 90.0}},
-                      {-0.02, 0.0, 0.0, 0.0}};
+  const Effect spring =
+      made::effect_of("nonlinear_stiffness", "cubic of the output", {},
+                      {{"threshold", "N", 20.0, 0.1, 90.0}}, {-0.02, 0.0, 0.0, 0.0});
   const Body body = made::four_pole_body();
   const Signals signals = signals_of(nearly_constant(9.81), constant(0.0));
   const FreeRun run = free_run(made::model_of(body, {spring}), signals);
