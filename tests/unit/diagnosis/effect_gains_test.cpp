@@ -45,17 +45,10 @@ TEST(EffectGainsTest, AStepComesWithTheSampleOfItsTime) {
   EXPECT_EQ(sut[kCount - 1], 1.25);
 }
 
-TEST(EffectGainsTest, AStepAtTheEndsIsOneGainForAll) {
+TEST(EffectGainsTest, AStepAtTheEndsIsOneGainForAllThatIsMultipliedNotSet) {
   const Signals signals = signals_from(0.0);
   for (const double each : gain_of(step_of(0.0, 0.25), signals)) ASSERT_EQ(each, 1.25);
-  for (const double each : gain_of(step_of(8.5, 0.25), signals)) ASSERT_EQ(each, 0.75);
-}
-
-TEST(EffectGainsTest, AGainIsMultipliedNotSet) {
-  const Signals signals = signals_from(0.0);
-  const auto once = gain_of(step_of(2.0, 0.25), signals);
-  const auto twice = gain_of(step_of(2.0, 0.25), signals, 2.0);
-  for (std::size_t n = 0; n < kCount; ++n) ASSERT_EQ(twice[n], 2.0 * once[n]) << n;
+  for (const double each : gain_of(step_of(8.5, 0.25), signals, 2.0)) ASSERT_EQ(each, 1.5);
 }
 
 TEST(EffectGainsTest, ALinearGainIsOneInTheMiddle) {
@@ -69,12 +62,10 @@ TEST(EffectGainsTest, ALinearGainIsOneInTheMiddle) {
 
 // 1 + sum c_k cos(pi k t), t from 0 to 1: three roundings below 2.
 TEST(EffectGainsTest, SlowCosinesAddUp) {
-  const auto sut = gain_of({"time_varying_gain",
-                            "slow cosines",
-                            {},
-                            {{"half_cosine_1", "-", 0.2}, {"half_cosine_2", "-", -0.1}},
-                            {}},
-                           signals_from(0.0));
+  const auto sut =
+      gain_of(made::effect_of("time_varying_gain", "slow cosines", {},
+                              {{"half_cosine_1", "-", 0.2}, {"half_cosine_2", "-", -0.1}}),
+              signals_from(0.0));
   for (std::size_t n = 0; n < kCount; ++n) {
     const double t = static_cast<double>(n) / 800.0;
     ASSERT_NEAR(sut[n], 1.0 + 0.2 * std::cos(kPi * t) - 0.1 * std::cos(2.0 * kPi * t), 1e-14) << n;
@@ -83,13 +74,10 @@ TEST(EffectGainsTest, SlowCosinesAddUp) {
 
 // The first parameter is the number of cycles and no weight.
 TEST(EffectGainsTest, ASinusoidalGainHasWholeCyclesOverTheRecord) {
-  const auto sut =
-      gain_of({"time_varying_gain",
-               "sinusoidal",
-               {},
-               {{"cycles_per_record", "-", 2.0}, {"sine", "-", 0.3}, {"cosine", "-", 0.1}},
-               {}},
-              signals_from(0.0));
+  const auto sut = gain_of(
+      made::effect_of("time_varying_gain", "sinusoidal", {},
+                      {{"cycles_per_record", "-", 2.0}, {"sine", "-", 0.3}, {"cosine", "-", 0.1}}),
+      signals_from(0.0));
   EXPECT_DOUBLE_EQ(sut[0], 1.1);
   EXPECT_NEAR(sut[100], 1.3, 1e-14) << "a quarter of a cycle";
   EXPECT_NEAR(sut[200], 0.9, 1e-14);
@@ -99,12 +87,10 @@ TEST(EffectGainsTest, ASinusoidalGainHasWholeCyclesOverTheRecord) {
 
 TEST(EffectGainsTest, AGainFollowsAChannelFromItsCentre) {
   const Signals signals = signals_from(0.0);
-  const auto sut = gain_of({"bilinear",
-                            "gain of the body",
-                            {"temp"},
-                            {{"sensitivity", "1/degC", 0.5}, constant("centre", "degC", 0.25)},
-                            {}},
-                           signals);
+  const auto sut =
+      gain_of(made::effect_of("bilinear", "gain of the body", {"temp"},
+                              {{"sensitivity", "1/degC", 0.5}, constant("centre", "degC", 0.25)}),
+              signals);
   for (std::size_t n = 0; n < kCount; ++n) {
     ASSERT_EQ(sut[n], 1.0 + 0.5 * (signals.at("temp").values[n] - 0.25)) << n;
   }
@@ -125,11 +111,9 @@ TEST(EffectGainsTest, GainsCountTimeFromTheRecordsStart) {
 }
 
 TEST(EffectGainsTest, AClockDriftIsCountedFromItsReferenceTime) {
-  const Effect sut{"clock_drift",
-                   "of the output",
-                   {},
-                   {{"drift", "us/s", 500.0}, constant("reference_time", "s", 30.0)},
-                   {}};
+  const Effect sut =
+      made::effect_of("clock_drift", "of the output", {},
+                      {{"drift", "us/s", 500.0}, constant("reference_time", "s", 30.0)});
   const EffectKind& kind = effect_kind(sut.kind);
   EXPECT_EQ(kind.input_delay_s(sut, 30.0), 0.0);
   EXPECT_DOUBLE_EQ(kind.input_delay_s(sut, 130.0), 0.05);
@@ -141,6 +125,23 @@ TEST(EffectGainsTest, ADelayIsTheSameAtAllTimes) {
   for (const double t_s : {-5.0, 0.0, 1e6}) {
     EXPECT_EQ(effect_kind("delay").input_delay_s(sut, t_s), 0.125);
   }
+}
+
+// Eq. DG-68.
+TEST(EffectGainsTest, AnEffectActsWithItsShare) {
+  Effect late{"delay", "of the input", {}, {{"delay", "s", 0.125}}, {}};
+  late.share = 0.5;
+  EXPECT_EQ(delay_in_part(late, 3.0), 0.0625);
+  Effect slopes{"asymmetry", "slopes at the output", {}, {{"slope_change", "-", 0.5}}, {}};
+  slopes.share = 0.25;
+  EXPECT_EQ(mapped_in_part(effect_kind("asymmetry"), slopes, -2.0), -1.75);
+  EXPECT_EQ(slope_in_part(effect_kind("asymmetry"), slopes, -2.0), 0.875);
+  Effect step = step_of(2.0, 0.25);
+  step.share = 0.5;
+  std::vector<double> gain(kCount, 2.0);
+  gain_in_part(step, signals_from(0.0), gain);
+  EXPECT_EQ(gain[199], 2.0 * 0.875);
+  EXPECT_EQ(gain[200], 2.0 * 1.125);
 }
 
 // [begin, end) of every burst; the times are exact in binary.
@@ -163,19 +164,15 @@ TEST(EffectGainsTest, ABurstLeavesOutItsBeginAndKeepsItsEnd) {
   EXPECT_EQ(weight[kCount - 1], 0.0);
 }
 
-TEST(EffectGainsTest, WithoutBurstsEveryWeightStays) {
-  std::vector<double> weight(kCount, 0.5);
-  effect_kind("transients").weigh({"transients", "", {}, {}, {}}, signals_from(0.0), weight);
-  EXPECT_EQ(weight, std::vector<double>(kCount, 0.5));
-}
-
-TEST(EffectGainsTest, AGainKindLeavesTheWeightsAndAWeightKindTheGain) {
+TEST(EffectGainsTest, WhatIsNoBurstLeavesTheWeightsAndABurstTheGain) {
   const Signals signals = signals_from(0.0);
   const std::vector<double> ones(kCount, 1.0);
   EXPECT_EQ(gain_of({"transients", "", {}, {{"b", "s", 1.0}, {"e", "s", 2.0}}, {}}, signals), ones);
-  std::vector<double> weight = ones;
-  effect_kind("regime_change").weigh(step_of(2.0, 0.5), signals, weight);
-  EXPECT_EQ(weight, ones);
+  for (const Effect& sut : {Effect{"transients", "", {}, {}, {}}, step_of(2.0, 0.5)}) {
+    std::vector<double> weight = ones;
+    effect_kind(sut.kind).weigh(sut, signals, weight);
+    EXPECT_EQ(weight, ones) << sut.kind;
+  }
 }
 
 }  // namespace stillhand::diagnosis::effect_gains_test

@@ -52,6 +52,8 @@ struct OutputMap {
 std::vector<OutputMap> output_maps() {
   return {{limit_of("output_saturation", "hard", 1.3), {-1.3, 1.3}},
           {limit_of("output_saturation", "soft", 1.3), {}},
+          {limit_of("output_saturation", "clip above", 0.4), {0.4}},
+          {limit_of("output_saturation", "clip below", -0.3), {-0.3}},
           {two_limits(0.7, -1.9), {-1.9, 0.7}},
           {play("at the output", 0.4), {-0.4, 0.4}},
           {slopes("slopes at the output", 0.35), {0.0}},
@@ -127,6 +129,38 @@ TEST(EffectMapsTest, TwoLimitsActEachOnItsSide) {
   EXPECT_EQ(slope(sut, 0.49), 1.0);
   EXPECT_EQ(slope(sut, 0.5), 0.0) << "at the limit the parameter moves the output, not y";
   EXPECT_EQ(slope(sut, -2.0), 0.0);
+  const Effect above = limit_of("output_saturation", "clip above", 0.4);
+  EXPECT_EQ(mapped(above, 1.0), 0.4);
+  EXPECT_EQ(mapped(above, -9.0), -9.0);
+  const Effect below = limit_of("output_saturation", "clip below", -0.3);
+  EXPECT_EQ(mapped(below, 9.0), 9.0);
+  EXPECT_EQ(mapped(below, -1.0), -0.3);
+}
+
+// phi(z), z in thresholds; a stop counts z from its limit.
+TEST(EffectMapsTest, ANonlinearityInsideTheBodyIsItsLaw) {
+  struct Law {
+    const char* kind;
+    const char* form;
+    double (*phi)(double);
+  };
+  for (const Law& sut : {
+           Law{"nonlinear_stiffness", "cubic of the output", [](double z) { return z * z * z; }},
+           {"nonlinear_stiffness", "bent of the output",
+            [](double z) { return z * z * z / (1.0 + z * z); }},
+           {"nonlinear_stiffness", "levelled of the output",
+            [](double z) { return z - std::tanh(z); }},
+           {"output_saturation", "stop above", [](double z) { return std::max(z, 0.0); }},
+           {"output_saturation", "stop below", [](double z) { return std::min(z, 0.0); }},
+       }) {
+    const Nonlinearity law =
+        effect_kind(sut.kind).feedback({sut.kind, sut.form, {}, {{"threshold", "N", 0.5}}, {}});
+    EXPECT_EQ(law.stop.value_or(law.threshold), 0.5) << sut.form;
+    LoopMemory none;
+    for (const double z : {-3.0, -0.7, 0.0, 0.4, 2.0}) {
+      EXPECT_NEAR(law.phi(z, none), sut.phi(z), 1e-14) << sut.form << " at " << z;
+    }
+  }
 }
 
 // L tanh(y/L) = y - y^3/(3 L^2) + 2 y^5/(15 L^4) - ..., alternating: between two partial sums.

@@ -5,10 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 
+#include "services/core/diagnosis/model/loop.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::diagnosis::effect_sizes_test {
@@ -79,11 +81,8 @@ TEST(EffectSizesTest, FrictionIsAForce) {
 }
 
 TEST(EffectSizesTest, HysteresisOfAChannelHasYieldForceAndSlipDistance) {
-  const Sized sut({"hysteresis",
-                   "elastic-plastic, beside the body",
-                   {"theta"},
-                   {{"threshold", "rad", 0.4, 1e-3, 5.0}},
-                   {0.3, -0.1}});
+  const Sized sut(made::effect_of("hysteresis", "elastic-plastic, beside the body", {"theta"},
+                                  {{"threshold", "rad", 0.4, 1e-3, 5.0}}, {0.3, -0.1}));
   EXPECT_EQ(sut.value("yield_force"), 0.3);
   EXPECT_EQ(sut.value("slip_distance"), 0.4);
   EXPECT_EQ(sut.named("slip_distance").unit, "rad");
@@ -94,20 +93,14 @@ TEST(EffectSizesTest, HysteresisOfAChannelHasYieldForceAndSlipDistance) {
 // E = q^-1 sum e_i D^i is e_0 at 0 Hz.
 TEST(EffectSizesTest, ALoopOfTheOutputHasItsStaticForceAndStiffness) {
   const double a = at_rest(kDenominator);
-  const Sized slips({"hysteresis",
-                     "elastic-plastic of the output",
-                     {},
-                     {{"threshold", "N", 0.5, 0.01, 25.0}},
-                     {-0.03, 0.02}});
+  const Sized slips(made::effect_of("hysteresis", "elastic-plastic of the output", {},
+                                    {{"threshold", "N", 0.5, 0.01, 25.0}}, {-0.03, 0.02}));
   EXPECT_NEAR(slips.value("yield_force"), 0.03 / a, 1e-12);
   EXPECT_EQ(slips.value("slip_force"), 0.5);
   EXPECT_FALSE(slips.named("slip_force").at_hz.has_value());
   EXPECT_NEAR(slips.value("stiffness_ratio"), a / (a + 0.03 / 0.5), 1e-12);
-  const Sized gap({"dead_zone",
-                   "play of the output",
-                   {},
-                   {{"threshold", "N", 0.4, 0.01, 20.0}},
-                   {0.03, -0.01}});
+  const Sized gap(made::effect_of("dead_zone", "play of the output", {},
+                                  {{"threshold", "N", 0.4, 0.01, 20.0}}, {0.03, -0.01}));
   EXPECT_EQ(gap.value("gap_width"), 0.8);
   EXPECT_NEAR(gap.value("stiffness_ratio"), (a - 0.03 / 0.4) / a, 1e-12);
   const Sized sides(
@@ -115,16 +108,71 @@ TEST(EffectSizesTest, ALoopOfTheOutputHasItsStaticForceAndStiffness) {
   EXPECT_NEAR(sides.value("stiffness_ratio"), (a - 0.01) / (a + 0.01), 1e-12);
 }
 
-// phi' = 3 z^2 at the largest output that was seen.
+// The slope of phi by central differences at the largest output that was seen: h^2/6 of its third
+// derivative, rounding of 1e-16 over h.
 TEST(EffectSizesTest, ASpringHardensOrSoftensAtTheLargestForceSeen) {
-  const Sized sut({"nonlinear_stiffness",
-                   "cubic of the output",
-                   {},
-                   {constant("threshold", "N", 1.0)},
-                   {-1e-3, 0.0}});
-  const double largest = largest_deflection(sut.line.run.body, 0.0, sut.signals);
+  constexpr double kStep = 1e-5;
+  for (const char* form : {"cubic of the output", "bent of the output", "levelled of the output"}) {
+    const Effect effect{
+        "nonlinear_stiffness", form, {}, {constant("threshold", "N", 0.8)}, {-1e-3, 0.0}};
+    const Sized sut(effect);
+    const double z = largest_deflection(sut.line.run.body, 0.0, sut.signals) / 0.8;
+    const Nonlinearity law = effect_kind(effect.kind).feedback(effect);
+    LoopMemory none;
+    const double slope = (law.phi(z + kStep, none) - law.phi(z - kStep, none)) / (2.0 * kStep);
+    const double a = at_rest(kDenominator);
+    EXPECT_NEAR(sut.value("stiffness_ratio"), (a + 1e-3 / 0.8 * slope) / a, 1e-9) << form;
+  }
+}
+
+// The numbers of every_effect.hpp; x is the largest deflection from the centre of 0.05 rad.
+TEST(EffectSizesTest, EachNumberIsItsClosedForm) {
+  // Of three samples the first weighs nothing.
+  const Signals few = made::signals_of({1.0, 2.0, 4.0}, {0.0, 1.0, 0.0}).weighed({0.0, 1.0, 1.0});
+  EXPECT_EQ(largest_deflection({9.0, 1.0, -3.0}, 1.0, few), 4.0);
+  const Signals signals(made::every_channel(kSamples, 11), {"u"}, "y");
   const double a = at_rest(kDenominator);
-  EXPECT_NEAR(sut.value("stiffness_ratio"), (a + 1e-3 * 3.0 * largest * largest) / a, 1e-12);
+  const double x = largest_deflection(signals.at("theta").values, 0.05, signals);
+  const double y = largest_deflection(signals.output().values, 0.0, signals);
+  const double both = signals.at("a_x").deviation * signals.at("theta").deviation;
+  struct Row {
+    const char* kind;
+    const char* form;
+    const char* size;
+    double want;
+  };
+  const auto all = made::every_effect();
+  for (const Row& row :
+       {Row{"bilinear", "beside the body", "force", 0.3 * both},
+        {"bilinear", "through the body", "force", 0.1 / a * both},
+        {"asymmetry", "square, beside the body", "even_force", 0.3 * x * x},
+        {"asymmetry", "square, through the body", "even_force", 0.1 / a * x * x},
+        {"nonlinear_stiffness", "cubic, beside the body", "stiffness_at_largest",
+         0.1 + 3.0 * 0.3 * x * x},
+        {"nonlinear_stiffness", "cubic, beside the body", "cubic_force", 0.3 * x * x * x},
+        {"nonlinear_stiffness", "at the output", "stiffness_ratio", 1.0 + 0.15 * y * y},
+        {"nonlinear_stiffness", "at the output", "cubic_force", 0.05 * y * y * y},
+        {"position_ripple", "two harmonics", "amplitude", std::hypot(0.1, 0.2)},
+        {"position_ripple", "two harmonics", "amplitude_2", std::hypot(0.1, 0.05)},
+        {"position_ripple", "two harmonics", "period", 0.4},
+        {"tone", "beside the body", "amplitude", std::hypot(0.1, 0.2)},
+        // (c_1 D + c_2)/M = (c_1 + c_2 - c_1 q^-1)/M at the mode's own frequency.
+        {"resonance", "beside the body", "magnitude",
+         std::abs(made::response({{{0.07, -0.05}}, made::mode(9.0, 0.1)}, 9.0))},
+        {"drift", "linear", "change", 0.3},
+        {"drift", "exponential", "change", 0.3 * (1.0 - std::exp(-19.99 / 5.0))},
+        {"time_varying_gain", "linear", "lowest_gain", 0.8},
+        {"time_varying_gain", "linear", "highest_gain", 1.2},
+        {"free_form", "force over a channel", "range", 0.5},
+        {"free_form", "gain over a channel", "range", 0.6},
+        // Over the straight line of 1.8 in 2.9 the third height is -1 to 0.5 at 1.8; E(1) = 0.02.
+        {"free_form", "curve inside the body", "range", (1.5 - 1.8 * 1.8 / 2.9) * 0.02 / a}}) {
+    const auto effect = std::ranges::find_if(
+        all, [&](const Effect& each) { return each.kind == row.kind && each.form == row.form; });
+    ASSERT_NE(effect, all.end()) << row.kind << ", " << row.form;
+    EXPECT_NEAR(Sized(*effect).value(row.size), row.want, 1e-9 * std::abs(row.want))
+        << row.kind << ", " << row.form << ", " << row.size;
+  }
 }
 
 // Inside the body another scale of N, with its inverse in M and E, is the same spring.
@@ -142,20 +190,26 @@ TEST(EffectSizesTest, TheScaleInsideTheBodyDoesNotMatter) {
   EXPECT_GT(one.named("stiffness_ratio").std_error, 0.0);
 }
 
-// With the slope at rest 0 the output is B/A and z is N/A times the input: B/N at the frequency.
-TEST(EffectSizesTest, AThresholdInsideTheBodyIsAnAmplitudeOfTheOutput) {
-  const Sized sut({"nonlinear_stiffness",
-                   "levelled inside the body",
-                   {},
-                   {},
-                   {0.02, -0.01, 0.005, 0.4, 0.1, 0.0, -0.01, 0.002}});
-  const Size& threshold = sut.named("threshold_force");
-  ASSERT_TRUE(threshold.at_hz.has_value());
-  EXPECT_GT(*threshold.at_hz, 0.5);
-  EXPECT_LT(*threshold.at_hz, 8.0);
-  const Body like{{sut.model.body.numerators[0]}, difference_basis({0.4, 0.1, 0.0}), 0.0};
-  // The slope at rest is that of a step of 1e-4: 3e-9.
-  EXPECT_NEAR(threshold.value, std::abs(made::response(like, *threshold.at_hz)), 1e-8);
+// Eq. DG-73 to DG-75 with the slope 1 at rest: |(B + E Z)/A|/|Z|, Z = N/(A - M).
+TEST(EffectSizesTest, AForceInsideTheBodyIsThatOfSmallMotions) {
+  const Sized sut(made::effect_of("hysteresis", "elastic-plastic inside the body", {}, {},
+                                  {0.02, -0.01, 0.005, 0.4, 0.1, 0.0, -0.01, 0.002}));
+  const LoopPath path = loop_path(sut.at.effect(), 2);
+  EXPECT_GT(sut.named("slip_force").at_hz.value(), 0.5);
+  EXPECT_LT(sut.named("slip_force").at_hz.value(), 8.0);
+  const auto at = [&](const std::vector<double>& c) {
+    return made::response({{c}, {1.0}}, sut.named("slip_force").at_hz.value());
+  };
+  const auto z = at(path.n) / (at(kDenominator) - at(path.m));
+  const auto y = (at(sut.model.body.numerators[0]) + at(path.e) * z) / at(kDenominator);
+  EXPECT_NEAR(sut.value("slip_force"), std::abs(y / z), 1e-9);
+  const double a = at_rest(kDenominator);
+  EXPECT_NEAR(sut.value("yield_force"), 0.02 / a, 1e-9);
+  EXPECT_NEAR(sut.value("stiffness_ratio"), a / (a + 0.01), 1e-9);
+  // z = -y: where the output is positive, |z| has the slope -1.
+  const Sized against(made::effect_of("asymmetry", "slopes inside the body", {}, {},
+                                      {0.0, 0.0, 0.0, -0.1, -0.2, -0.2, 0.01, 0.0}));
+  EXPECT_NEAR(against.value("stiffness_ratio"), (a + 0.01) / (a - 0.01), 1e-9);
 }
 
 // (1 - k) / (1 - k z^-1) against 1 / (1 + 2 pi j f lag): a sample of 10 ms by 150 ms.
@@ -199,11 +253,9 @@ TEST(EffectSizesTest, MapsAndGainsHaveTheirNumbers) {
   const Sized limited(
       {"input_saturation", "hard", {"u"}, {{"limit", "m/s^2", 0.9, 0.02, 9.0}}, {}});
   EXPECT_NEAR(limited.value("limit_force"), 0.9 * 0.1 / at_rest(kDenominator), 1e-12);
-  const Sized change({"regime_change",
-                      "step of the gain",
-                      {},
-                      {{"time", "s", 4.0, 0.0, 60.0, false}, {"change", "-", 0.25, -5.0, 5.0}},
-                      {}});
+  const Sized change(
+      made::effect_of("regime_change", "step of the gain", {},
+                      {{"time", "s", 4.0, 0.0, 60.0, false}, {"change", "-", 0.25, -5.0, 5.0}}));
   EXPECT_DOUBLE_EQ(change.value("gain_ratio"), 1.25 / 0.75);
   EXPECT_TRUE(std::isnan(change.named("time").std_error)) << "it was searched, not fitted";
 }
