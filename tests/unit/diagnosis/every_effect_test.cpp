@@ -2,6 +2,7 @@
 // Invariants that every kind and form of effect keeps, each run next to the same body.
 #include "tests/unit/diagnosis/every_effect.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
+#include "services/core/diagnosis/model/examples.hpp"
 
 namespace stillhand::diagnosis::every_effect_test {
 
@@ -140,6 +142,30 @@ TEST(EveryEffectTest, ARippleOfADerivedPositionIsTimeAlone) {
   EXPECT_FALSE(effect_kind(sut.kind).time_only(sut));
   sut.channels = {"position of omega"};
   EXPECT_TRUE(effect_kind(sut.kind).time_only(sut));
+}
+
+// METHOD Eq. DG-62: a tenth of a gain or a stiffness, 20 ms between the clocks, the middle of the
+// band and of the record.
+TEST(EveryEffectTest, ExamplesHaveMiddlingNumbers) {
+  const Signals signals = signals_of(made::every_channel(kCount, 11));
+  const auto example = [&](const Body& body, const std::string& kind) {
+    const auto all = examples(made::model_of(body), signals);
+    return *std::ranges::find(all, kind, &Effect::kind);
+  };
+  const Body body = made::two_pole_body();
+  const auto number = [&](const char* kind, std::size_t i) { return example(body, kind).value(i); };
+  const double y = signals.output().deviation;
+  const double middle_hz = std::sqrt(signals.lowest_excited_hz() * signals.highest_excited_hz());
+  const double half_s = 0.5 * signals.duration_s();
+  for (const char* kind : {"asymmetry", "time_varying_gain"}) EXPECT_EQ(number(kind, 0), 0.1);
+  for (const char* kind : {"tone", "resonance"}) EXPECT_DOUBLE_EQ(number(kind, 0), middle_hz);
+  EXPECT_THAT(example(body, "resonance").coefficients, testing::ElementsAre(0.0, 1.0));
+  EXPECT_DOUBLE_EQ(1e-6 * number("clock_drift", 0) * signals.duration_s(), 0.02);
+  EXPECT_DOUBLE_EQ(number("transients", 0), half_s - 0.25);
+  const Effect spring = example(body, "nonlinear_stiffness");
+  const auto& a = body.denominator;
+  EXPECT_DOUBLE_EQ(spring.coefficients[0] / spring.value(0), -0.1 * (a[0] + a[1] + a[2]));
+  EXPECT_DOUBLE_EQ(example({{{1.0}}, {1.0}}, "nonlinear_stiffness").value(0) * y * y, 0.1);
 }
 
 TEST(EveryEffectTest, EvidenceIsOneClauseWithFiniteNumbers) {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shapes that no named kind has, as the whole search finds them, and what a curve is beyond its
 // knots.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include "services/core/diagnosis/diagnose.hpp"
@@ -158,6 +161,57 @@ TEST(FreeFormTest, ACurveIsLevelBeyondItsOuterKnots) {
   }
 }
 
+// METHOD "Kinds": the shares of the samples that weigh, all but the first second, below each knot.
+TEST(FreeFormTest, KnotsLieWhereTheirShareOfTheSamplesLiesBelow) {
+  Recorded sut;
+  std::vector<double> acting = sut.u;
+  for (double& u : acting) u = std::max(u, -0.4);  // a valve, and a spring on one side
+  sut.y = made::answer(made::two_pole_body(), acting);
+  for (std::size_t n = 0; n < kCount; ++n) sut.y[n] += 0.5 * std::max(0.0, sut.theta[n] - 0.8);
+  const made::Studied of(
+      made::measurement_of({{"u", "m/s^2", sut.u}, {"theta", "rad", sut.theta}, {"y", "N", sut.y}}),
+      2);
+  std::set<std::string> forms;
+  for (const Proposal& each : effect_kind("free_form").proposed(of.screening)) {
+    const Effect& effect = each.effect;
+    std::vector<double> x = of.signals.at(effect.channels.back()).values;
+    x.erase(x.begin(), x.begin() + 100);
+    std::ranges::sort(x);
+    std::vector<double> shares{0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99};
+    if (effect.form == "curve of the input") shares = {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
+    if (effect.form == "gain over the size of an input") continue;
+    forms.insert(effect.form);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const double below = shares[k] * static_cast<double>(x.size() - 1);
+      EXPECT_EQ(effect.value(k), x[static_cast<std::size_t>(below)]) << effect.form << ", " << k;
+    }
+  }
+  EXPECT_THAT(forms, testing::IsSupersetOf({"force over a channel", "curve of the input"}));
+}
+
+// Sizes of 1, then 3, fade by e^(-1/50) a sample in 0.5 s; a stretch of 2 starts from its own first
+// second.  With these knots the gain is half the size.
+TEST(FreeFormTest, TheSizeOfAnInputFadesWithItsMemory) {
+  std::vector<double> u(600);
+  for (std::size_t n = 0; n < 600; ++n) {
+    u[n] = (n < 200 ? 1.0 : (n < 400 ? 3.0 : 2.0)) * (n % 2 == 0 ? 1.0 : -1.0);
+  }
+  const auto measurement = made::measurement_of({{"u", "V", u}, {"y", "N", made::white(600, 2)}});
+  const Signals signals(made::cut_in_two(measurement, 400, 5.0), {"u"}, "y");
+  std::vector<double> sut(600, 1.0);
+  effect_kind("free_form")
+      .gain(made::effect_of("free_form", "gain over the size of an input", {"u"},
+                            {constant("memory", "s", 0.5), constant("knot_1", "V", 0.0),
+                             constant("knot_2", "V", 2.0), constant("knot_3", "V", 4.0),
+                             constant("change_1", "-", -1.0), constant("change_2", "-", 1.0)}),
+            signals, sut);
+  for (std::size_t n = 0; n < 600; ++n) {
+    const double fading = 9.0 - 8.0 * std::exp(-(static_cast<double>(n) - 199.0) / 50.0);
+    const double square = n < 200 ? 1.0 : (n < 400 ? fading : 4.0);
+    ASSERT_NEAR(sut[n], 0.5 * std::sqrt(square), 1e-12) << n;
+  }
+}
+
 // A model file may hold anything.
 TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
   const Signals signals = signals_over(made::white(50, 7));
@@ -169,33 +223,25 @@ TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
           {"free_form", "force over a channel", {}, {knot("knot_1", 0.0), knot("knot_2", 1.0)}, {}},
           signals, {}, columns),
       std::out_of_range);
-  EXPECT_THROW(sut.terms({"free_form",
-                          "force over a channel",
-                          {"theta"},
-                          {knot("knot_1", 1.0), knot("knot_2", 1.0)},
-                          {}},
+  EXPECT_THROW(sut.terms(made::effect_of("free_form", "force over a channel", {"theta"},
+                                         {knot("knot_1", 1.0), knot("knot_2", 1.0)}),
                          signals, {}, columns),
                std::out_of_range);
   const std::vector<Parameter> heights(3, constant("height_1", "-", 0.0));
   for (const double last : {2.0, 0.5}) {  // a height too few, and knots that do not ascend
-    Effect inside{"free_form",
-                  "curve inside the body",
-                  {},
-                  {knot("knot_1", 0.0), knot("knot_2", 1.0), knot("knot_3", last)},
-                  {}};
+    Effect inside =
+        made::effect_of("free_form", "curve inside the body", {},
+                        {knot("knot_1", 0.0), knot("knot_2", 1.0), knot("knot_3", last)});
     inside.parameters.insert(inside.parameters.end(), heights.begin(),
                              heights.end() - (last > 1.0 ? 1 : 0));
     EXPECT_THROW(std::ignore = sut.feedback(inside), std::out_of_range);
   }
   std::vector<double> gain(50, 1.0);
-  EXPECT_THROW(sut.gain({"free_form",
-                         "gain over the size of an input",
-                         {"u"},
-                         {constant("memory", "s", 0.0),
-                          knot("knot_1", 0.0),
-                          knot("knot_2", 1.0),
-                          {"change_1", "-", 0.1, -3.0, 3.0}},
-                         {}},
+  EXPECT_THROW(sut.gain(made::effect_of("free_form", "gain over the size of an input", {"u"},
+                                        {constant("memory", "s", 0.0),
+                                         knot("knot_1", 0.0),
+                                         knot("knot_2", 1.0),
+                                         {"change_1", "-", 0.1, -3.0, 3.0}}),
                         signals, gain),
                std::out_of_range);
 }

@@ -16,19 +16,10 @@ constexpr std::size_t kCount = 3000;
 
 class ShapeExchangeTest : public ::testing::Test {
  protected:
-  ShapeExchangeTest()
-      : measurement_(made::measurement_of(
-            {{"a_y", "m/s^2", made::ride(kCount, 1)}, {"f", "N", made::white(kCount, 2)}})),
-        signals_(measurement_, {"a_y"}, "f") {}
-
   // N = B and M = E = q^-1 stiffness / threshold in DG-4: z is the body's own output over the
   // threshold, so the structure is one that a spring can have.
   [[nodiscard]] Model sprung(const Effect& effect, double stiffness, double threshold) const {
-    Model model;
-    model.rate_hz = made::kRateHz;
-    model.inputs = {"a_y"};
-    model.output = "f";
-    model.body = made::two_pole_body();
+    Model model = made::model_of(made::two_pole_body(), {effect});
     const double force = stiffness * threshold;
     // E by powers of D: q^-1 = 1 - D.
     std::vector<double> numbers{force, -force, 0.0};
@@ -37,7 +28,6 @@ class ShapeExchangeTest : public ::testing::Test {
     n = difference_basis(n);
     numbers.insert(numbers.end(), n.begin(), n.end());
     numbers.insert(numbers.end(), {stiffness, 0.0});
-    model.effects = {effect};
     model.effects.back().coefficients = numbers;
     return model;
   }
@@ -60,8 +50,13 @@ class ShapeExchangeTest : public ::testing::Test {
     return share.value();
   }
 
-  Measurement measurement_;
-  Signals signals_;
+  [[nodiscard]] Effect play_with(double threshold) const {
+    Effect play = play_;
+    play.parameters = {constant("threshold", "-", threshold)};
+    return play;
+  }
+
+  Signals signals_ = made::signals_of(made::ride(kCount, 1), made::white(kCount, 2));
   Effect play_{"dead_zone", "play inside the body", {}, {}, {}};
   Effect levelled_{"nonlinear_stiffness", "levelled inside the body", {}, {}, {}};
   Effect bent_{"nonlinear_stiffness", "bent inside the body", {}, {}, {}};
@@ -70,11 +65,18 @@ class ShapeExchangeTest : public ::testing::Test {
   double size_ = made::rms_of(made::answer(made::two_pole_body(), made::ride(kCount, 1)));
 };
 
-TEST_F(ShapeExchangeTest, TheSameShapeIsTheSameModel) {
+// With its threshold elsewhere the law is the same at another scale of z: from a quarter to four.
+TEST_F(ShapeExchangeTest, TheSameShapeIsTheSameModelAtEachScale) {
   const Model model = sprung(play_, -0.02, size_);
-  const auto sut = with_shape_of(play_, model, signals_);
-  ASSERT_TRUE(sut);
-  EXPECT_LT(difference(*sut, model), 1e-6);
+  for (const double scale : {0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0}) {
+    const auto sut = with_shape_of(play_with(1.0 / scale), model, signals_);
+    ASSERT_TRUE(sut) << scale;
+    EXPECT_LT(difference(*sut, model), 1e-6) << scale;
+  }
+  // A curve's scales are a fifth apart, from 0.08 to 12.
+  for (const int fifths : {-14, 1, 14}) {
+    EXPECT_LT(read_as(play_with(std::pow(1.2, -fifths)), model, signals_).unread, 1e-6) << fifths;
+  }
 }
 
 // z^3/(1 + z^2) is z^3 but for a share of z^2; thresholds 20 times the motion: z^2 is 0.0025.
@@ -109,7 +111,7 @@ TEST_F(ShapeExchangeTest, ALiftedModelRunsAsBefore) {
 TEST_F(ShapeExchangeTest, OnlyANonlinearityInsideTheBodyIsOne) {
   Model model = sprung(play_, -0.02, size_);
   EXPECT_TRUE(ends_inside_body(model));
-  model.effects.push_back({"coupled_input", "static", {"a_y"}, {}, {1.0}});
+  model.effects.push_back({"coupled_input", "static", {"u"}, {}, {1.0}});
   EXPECT_FALSE(ends_inside_body(model));
   model.effects.clear();
   EXPECT_FALSE(ends_inside_body(model));
