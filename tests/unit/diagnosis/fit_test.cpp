@@ -305,25 +305,18 @@ std::vector<double> by_leaving_folds_out(const LinearCase& of) {
 
 // For a model that is linear in its numbers one linearisation is exact, up to the ridge: 1e-6 of
 // the diagonal moves the step, itself a few hundredths, by 1e-6 of it.
-TEST(FitTest, LinearisedCrossValidationEqualsLeavingFoldsOut) {
+TEST(FitTest, LinearisedAndRefittedCrossValidationEqualLeavingFoldsOut) {
   LinearCase of;
   fit(of.model, of.signals, of.blocks);
   const Linearisation line = linearised(of.model, of.signals);
-  const HeldOut sut = held_out_linearised(
-      grams_of(line.jacobian, line.residual, line.run.weight, of.blocks), of.blocks);
+  const Grams grams = grams_of(line.jacobian, line.residual, line.run.weight, of.blocks);
   const auto want = by_leaving_folds_out(of);
-  ASSERT_EQ(sut.squares.size(), want.size());
-  EXPECT_TRUE(sut.finite);
-  for (std::size_t b = 0; b < want.size(); ++b) EXPECT_NEAR(sut.squares[b] / want[b], 1.0, 1e-6);
-}
-
-TEST(FitTest, RefittingEqualsLeavingFoldsOut) {
-  LinearCase of;
-  fit(of.model, of.signals, of.blocks);
-  const HeldOut sut = held_out(of.model, of.signals, of.blocks);
-  const auto want = by_leaving_folds_out(of);
-  EXPECT_TRUE(sut.finite);
-  for (std::size_t b = 0; b < want.size(); ++b) EXPECT_NEAR(sut.squares[b] / want[b], 1.0, 1e-6);
+  for (const HeldOut& sut :
+       {held_out_linearised(grams, of.blocks), held_out(of.model, of.signals, of.blocks)}) {
+    ASSERT_EQ(sut.squares.size(), want.size());
+    EXPECT_TRUE(sut.finite);
+    for (std::size_t b = 0; b < want.size(); ++b) EXPECT_NEAR(sut.squares[b] / want[b], 1.0, 1e-6);
+  }
 }
 
 // What is held out of white noise is its RMS, more by half the share of fitted numbers: 3 of 2400.

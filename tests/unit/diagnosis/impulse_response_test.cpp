@@ -54,6 +54,21 @@ TEST(ImpulseResponseTest, WhatAFiniteResponseLeavesIsTheNoise) {
   EXPECT_NEAR(std::sqrt(square / 11849.0), std::sqrt(151.0 / 11849.0), 0.17 * 0.113);
 }
 
+// DG-13: a twentieth of the record over the number of inputs.
+TEST(ImpulseResponseTest, TwoInputsShareTheLags) {
+  const auto u = made::white(4000, 1);
+  const auto v = made::white(4000, 2);
+  const auto y = sum_of(finite_response(u), made::answer({0.3, 0.0, -0.2}, {1.0}, v));
+  const Signals signals(made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}}),
+                        {"u", "v"}, "y");
+  const ImpulseResponse sut = fit_impulse_response(signals);
+  EXPECT_EQ(sut.lags, 100u);
+  EXPECT_LT(sut.rmse, 1e-6);
+  const auto w = made::white(kCount, 3);
+  const Signals fast(made::measurement_of({{"u", "V", w}, {"y", "N", w}}, 1000.0), {"u"}, "y");
+  EXPECT_EQ(fit_impulse_response(fast).lags, 200u) << "1.5 s would be 1500";
+}
+
 TEST(ImpulseResponseTest, AFiniteResponseNeverReachesOverAGap) {
   const auto u = made::white(kCount, 1);
   Measurement measurement = made::measurement_of({{"u", "V", u}, {"y", "N", finite_response(u)}});

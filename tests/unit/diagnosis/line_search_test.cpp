@@ -73,14 +73,15 @@ TEST(LineSearchTest, WhiteNoiseHasNoProminentLine) {
 
 TEST(LineSearchTest, TwoLinesComeInOrderAndSideLobesDoNotCount) {
   const auto t_s = clock();
-  std::vector<double> residual = sine_over(t_s, 5.003, 1.0);
-  add(sine_over(t_s, 5.203, 0.8), residual);
+  const double turn_hz = 1.0 / (t_s.back() - t_s.front());
+  std::vector<double> residual = sine_over(t_s, 300.0 * turn_hz, 1.0);
+  add(sine_over(t_s, 304.0 * turn_hz, 0.8), residual);
   add(sine_over(t_s, 21.0, 0.2), residual);
   const auto sut = strongest_lines(t_s, residual, 0.1, 48.0, 3);
   ASSERT_EQ(sut.size(), 3u);
-  // Each stands on the other's lobes, a fortieth of its amplitude: within one step.
-  EXPECT_NEAR(sut[0].frequency, 5.003, 0.25 / 60.0);
-  EXPECT_NEAR(sut[1].frequency, 5.203, 0.25 / 60.0);
+  // Of whole turns: each stands where the other's lobes are 0, and no nearer than 3/range (DG-15).
+  EXPECT_NEAR(sut[0].frequency, 300.0 * turn_hz, 0.25 / 60.0);
+  EXPECT_NEAR(sut[1].frequency, 304.0 * turn_hz, 0.25 / 60.0);
   // Lobes of the two, down to a tenth of their amplitude 3 to 8 lines away, may come before 21 Hz;
   // none of the lines is nearer than 3/range to a stronger one.
   for (std::size_t i = 0; i < sut.size(); ++i) {

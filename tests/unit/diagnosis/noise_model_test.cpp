@@ -52,6 +52,19 @@ TEST(NoiseModelTest, TheTapsAreThoseOfTheEquationThatMadeTheNoise) {
   EXPECT_NEAR(sut[2] / sut[0], 0.3, 0.03);
 }
 
+// Eq. DG-61: 24 numbers at most, and a hundred samples for each; the first tenth does not count.
+TEST(NoiseModelTest, TheOrderIsBoundedByTheSamples) {
+  const auto order_of = [](std::size_t count, std::size_t lag) {
+    std::vector<double> r = white(count, 6);
+    for (std::size_t n = lag; n < count; ++n) r[n] -= 0.8 * r[n - lag];
+    return noise_taps(made::column_of(r), some_signals(count)).size() - 1;
+  };
+  EXPECT_EQ(order_of(190, 1), 1u);
+  EXPECT_EQ(order_of(290, 2), 2u);
+  EXPECT_EQ(order_of(kSamples, 24), 24u);
+  EXPECT_LT(order_of(kSamples, 30), 24u) << "what is further back is not seen";
+}
+
 TEST(NoiseModelTest, WhatPassesTheFilterIsWhiteAndAsLarge) {
   const Signals signals = some_signals();
   Eigen::VectorXd sut = coloured_noise(5);
@@ -81,15 +94,18 @@ TEST(NoiseModelTest, NothingPassesFromOneStretchToTheNextOrFromASampleWithoutWei
   EXPECT_EQ(x[199], 1.0);
 }
 
-TEST(NoiseModelTest, ASampleOfSlowNoiseHoldsLessThanAnIndependentOne) {
-  constexpr std::size_t kCount = 40000;
-  const std::vector<double> e = white(kCount, 1);
-  const Eigen::Map<const Eigen::VectorXd> independent(e.data(), kCount);
-  EXPECT_EQ(correlation_samples(independent, 100.0), 1.0);
-  // r(n) = 0.9 r(n-1) + e(n): 1 + 2 x 0.9/(1 - 0.9) = 19, without what is below 0.05: 18.
-  Eigen::VectorXd slow = independent;
-  for (Eigen::Index n = 1; n < slow.size(); ++n) slow[n] += 0.9 * slow[n - 1];
-  EXPECT_NEAR(correlation_samples(slow, 100.0), 18.0, 2.0);
+// rho_k = 1 - k/N of a constant of N samples, for 10 s or a quarter of them; 1 - k/30 of 30 among
+// zeros, down to 0.067 at k = 28.  The sum to L: 1 + 2 L - L (L + 1)/N.
+TEST(NoiseModelTest, CorrelationsCountForTenSecondsOrAQuarterOrAboveATwentieth) {
+  const auto sum_to = [](double most, double count) {
+    return 1.0 + 2.0 * most - most * (most + 1.0) / count;
+  };
+  Eigen::VectorXd short_one = Eigen::VectorXd::Zero(400);
+  short_one.segment(50, 30).setOnes();
+  EXPECT_NEAR(correlation_samples(Eigen::VectorXd::Ones(8000), 100.0), sum_to(1000, 8000), 1e-9);
+  EXPECT_NEAR(correlation_samples(Eigen::VectorXd::Ones(2000), 100.0), sum_to(500, 2000), 1e-9);
+  EXPECT_NEAR(correlation_samples(short_one, 100.0), sum_to(28, 30), 1e-9);
+  EXPECT_EQ(correlation_samples(made::column_of(white(40000, 1)), 100.0), 1.0) << "independent";
 }
 
 // A friction of 15 % of the force under slow noise of 16 % of it, in a minute.
