@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <vector>
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
@@ -31,6 +34,28 @@ TEST(EvaluationTest, ThroughPolesIsTheRecursionOfEveryStretch) {
   EXPECT_THAT(through_poles({1.0, 0.0, 2.0, 4.0, 0.0, 0.0}, {1.0, -0.5, 0.25}, stretches),
               ElementsAre(1.0, 0.5, 2.0, 4.0, 2.0, 0.0));
   EXPECT_THAT(through_poles({1.0, 5.0, 2.0}, {1.0}, {{0, 3, 0.0}}), ElementsAre(1.0, 5.0, 2.0));
+  // Each order has a recursion of its own.
+  const std::vector<double> x = made::white(50, 7);
+  std::vector<double> a{1.0};
+  for (int order = 1; order <= 8; ++order) {
+    a.push_back(0.3 / order - 0.1);
+    EXPECT_THAT(through_poles(x, a, {{0, 50, 0.0}}),
+                Pointwise(DoubleNear(1e-12), made::answer({1.0}, a, x)))
+        << order;
+  }
+  EXPECT_THAT(through_path({4.0, 0.0, 2.0, 8.0, 0.0}, std::vector{1.0, 2.0}, {1.0, -0.5},
+                           {{0, 3, 0.0}, {3, 5, 9.0}}),
+              ElementsAre(4.0, 10.0, 7.0, 8.0, 20.0));
+  EXPECT_THAT(lagged({1.0, 3.0, 2.0, 7.0, 8.0}, 1, {{0, 3, 0.0}, {3, 5, 9.0}}),
+              ElementsAre(1.0, 1.0, 3.0, 7.0, 7.0));
+}
+
+TEST(EvaluationTest, APredictionMayBeAMillionTimesTheOutput) {
+  Signal output;
+  EXPECT_EQ(runaway_bound(output), 1e30);
+  output.mean = -3.0;
+  output.deviation = 1.0;
+  EXPECT_EQ(runaway_bound(output), 4e6);
 }
 
 TEST(EvaluationTest, DifferencesStartFromRestInEveryStretch) {
@@ -82,21 +107,46 @@ TEST(EvaluationTest, InitialStatesRemoveAFreeResponseAndNothingElse) {
   EXPECT_LT(taken, 24.0);
 }
 
+// Eq. DG-10: at most 10 s or a quarter of the record; of bodies that ring for long the stretch.
+TEST(EvaluationTest, AFreeResponseIsSoughtForTenSecondsOrAQuarterOfTheRecord) {
+  const Body body{{{0.0, 1.0}}, {1.0, -std::exp(-1.0 / 3000.0)}};
+  for (const auto& [count, slow, last] :
+       {std::tuple{2001, false, 1000}, {6001, false, 1500}, {2001, true, 2000}}) {
+    const auto x = made::white(static_cast<std::size_t>(count), 1);
+    Signals signals = made::signals_of(x, x);
+    if (slow) signals = signals.with_slow_poles();
+    const Eigen::VectorXd sut =
+        InitialStates(body, signals, std::vector<double>(x.size(), 1.0)).part_of(column_of(x));
+    EXPECT_NE(sut[last - 1], 0.0) << count;
+    EXPECT_EQ(sut.tail(count - last).norm(), 0.0) << count;
+  }
+}
+
+// Eq. DG-66: of slow modes those below the excited band, which hold a level.
+TEST(EvaluationTest, OfSlowModesThoseWithinTheBandHaveNoInitialState) {
+  const auto x = made::ride(kCount, 1);
+  const Signals signals = made::signals_of(x, x).with_slow_poles();
+  for (const double share : {0.8, 1.2}) {
+    const double radius = std::exp(-1.0 / static_cast<double>(kCount));
+    const double turn =
+        share * 2.0 * std::numbers::pi * signals.lowest_excited_hz() / made::kRateHz;
+    const Body body{{{0.0, 1.0, 0.0}}, {1.0, -2.0 * radius * std::cos(turn), radius * radius}};
+    const InitialStates sut(body, signals, signals.weight());
+    EXPECT_EQ(sut.part_of(column_of(x)).norm() > 0.0, share < 1.0) << share;
+  }
+}
+
 // Of a mode next to a body without poles, at 0.5 Hz.
 TEST(EvaluationTest, AModeThatRingsForAnEighthOfTheRecordHasNoInitialState) {
-  const Signals signals(made::measurement_of({{"u", "V", made::white(kCount, 1)},
-                                              {"y", "N", made::white(kCount, 2)}}),
-                        {"u"}, "y");
+  const Signals signals = made::signals_of(made::white(kCount, 1), made::white(kCount, 2));
   const double duration_s = 0.01 * static_cast<double>(kCount);
   const auto left_of = [&](double decay_s) {
     const double ratio = 1.0 / (decay_s * 2.0 * std::numbers::pi * 0.5);
     Model model = made::model_of({{{1.0}}, {1.0}, 0.0});
-    model.effects = {
-        {"resonance",
-         "beside the body",
-         {},
-         {{"frequency", "Hz", 0.5, 0.1, 40.0}, {"damping_ratio", "-", ratio, 0.001, 1.0}},
-         {0.0, 0.0}}};
+    model.effects = {made::effect_of(
+        "resonance", "beside the body", {},
+        {{"frequency", "Hz", 0.5, 0.1, 40.0}, {"damping_ratio", "-", ratio, 0.001, 1.0}},
+        {0.0, 0.0})};
     Eigen::MatrixXd column(static_cast<Eigen::Index>(kCount), 1);
     for (std::size_t n = 0; n < kCount; ++n) {
       const double t_s = 0.01 * static_cast<double>(n);
@@ -156,8 +206,7 @@ TEST(EvaluationTest, TheResidualOfTheTrueModelIsNothingWhateverThePast) {
     return std::vector<double>(x.begin() + before, x.end());
   };
   // One stretch, so that the past is unknown once.
-  const Signals signals(made::measurement_of({{"u", "V", tail(u)}, {"y", "N", tail(y)}}), {"u"},
-                        "y");
+  const Signals signals = made::signals_of(tail(u), tail(y));
   FreeRun run;
   const Eigen::VectorXd sut = residual_of(made::model_of(body), signals, run);
   // Before the first second nothing is judged; behind it the response is fitted where it is above a
@@ -176,13 +225,11 @@ TEST(EvaluationTest, WhatIsNotTheBodysIsTakenOffTheOutput) {
       made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", made::white(kCount, 3)}});
   const Signals signals(measurement, {"u"}, "y");
   Model model = made::model_of(
-      body, {{"input_saturation", "hard", {"u"}, {{"limit", "V", 0.5, 0.0, 9.0}}, {}},
-             {"bilinear",
-              "gain of the body",
-              {"v"},
-              {{"sensitivity", "1/V", 0.1, -1.0, 1.0}, constant("centre", "V", 0.0)},
-              {}},
-             {"coupled_input", "static", {"v"}, {}, {1.5}}});
+      body,
+      {{"input_saturation", "hard", {"u"}, {{"limit", "V", 0.5, 0.0, 9.0}}, {}},
+       made::effect_of("bilinear", "gain of the body", {"v"},
+                       {{"sensitivity", "1/V", 0.5, -1.0, 1.0}, constant("centre", "V", 0.0)}),
+       {"coupled_input", "static", {"v"}, {}, {1.5}}});
   model.body.offset = 0.7;
   std::vector<double> output = free_run(model, signals).prediction;
   std::vector<std::vector<double>> inputs;
@@ -194,7 +241,8 @@ TEST(EvaluationTest, WhatIsNotTheBodysIsTakenOffTheOutput) {
   // Left: body and offset / gain, gain at least 0.05.
   const auto y = made::settled_answer(body.numerators[0], body.denominator, limited);
   for (std::size_t n = 0; n < kCount; ++n) {
-    ASSERT_NEAR(output[n], y[n] + 0.7 / (1.0 + 0.1 * v[n]), 1e-11) << n;
+    const double gain = 1.0 + 0.5 * v[n];
+    ASSERT_NEAR(output[n], (gain * y[n] + 0.7) / std::max(gain, 0.05), 1e-10) << n;
   }
   model.effects.push_back({"output_saturation", "hard", {}, {{"limit", "N", 1.0, 0.0, 9.0}}, {}});
   EXPECT_FALSE(without_effects(model, signals, inputs, output));

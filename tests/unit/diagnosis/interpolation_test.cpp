@@ -55,6 +55,7 @@ TEST(InterpolationTest, ADelayOfWholeSamplesIsExact) {
   // 25 samples: 0.25 s times 100 Hz is exact in binary.
   const auto sut = delayed(x, signals_of(x), [](double) { return 0.25; });
   for (std::size_t n = 30; n < kCount; ++n) ASSERT_EQ(sut[n], x[n - 25]) << n;
+  EXPECT_EQ(delayed(x, signals_of(x), [](double) { return 0.0; }), x);
 }
 
 TEST(InterpolationTest, ADelayedSineIsTheSineOfTheDelayedTime) {
@@ -99,6 +100,7 @@ TEST(InterpolationTest, AQuinticIsReproduced) {
       const double want = quintic(static_cast<double>(n) / made::kRateHz - delay_s);
       // Values below 12: some ulps of 2e-15.
       ASSERT_NEAR(sut[n], want, 1e-13) << n << ", " << delay_s << " s";
+      ASSERT_NEAR(value_at(x, static_cast<double>(n) - delay_s * made::kRateHz), want, 1e-13);
     }
   }
 }
@@ -116,11 +118,6 @@ TEST(InterpolationTest, DelaysOfSumsAreSumsOfDelays) {
   for (std::size_t n = 0; n < kCount; ++n) {
     ASSERT_NEAR(of_sum[n], 2.0 * of_x[n] - of_y[n], 1e-14 * 10.0) << n;
   }
-}
-
-TEST(InterpolationTest, WithoutADelayNothingChanges) {
-  const auto x = made::white(kCount, 5);
-  EXPECT_EQ(delayed(x, signals_of(x), [](double) { return 0.0; }), x);
 }
 
 // A constant has no time: the weights add up to 1 wherever the point lies.

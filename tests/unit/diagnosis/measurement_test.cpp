@@ -104,8 +104,12 @@ TEST(MeasurementTest, AStretchBeginsAfterTheOneBefore) {
   Measurement sut = two_stretches();
   sut.stretches[1].start_s = 2.1;  // the first ends at 2.3 s
   EXPECT_THAT(error_of(sut), HasSubstr("stretch 1: got a start at 2.1"));
-  sut.stretches[1].start_s = 2.3;
+  sut.stretches[1].start_s = 2.24;
+  EXPECT_THAT(error_of(sut), HasSubstr("stretch 1")) << "more than half a sample early";
+  sut.stretches[1].start_s = 2.26;
   EXPECT_EQ(error_of(sut), "accepted");
+  sut.stretches[0].start_s = -7.0;
+  EXPECT_EQ(error_of(sut), "accepted") << "a clock may begin anywhere";
 }
 
 }  // namespace stillhand::diagnosis::measurement_test

@@ -31,11 +31,9 @@ Model two_inputs_and_an_effect() {
   body.denominator = {1.0, -1.2, 0.5};
   body.offset = 0.25;
   const Effect delay{"delay", "of the input", {}, {{"delay", "s", 0.04, -0.1, 0.5}}, {}};
-  const Effect tone{"tone",
-                    "beside the body",
-                    {},
-                    {{"frequency", "Hz", 3.0, 2.5, 3.5}, constant("reference", "s", 7.0)},
-                    {0.1, 0.2}};
+  const Effect tone = made::effect_of(
+      "tone", "beside the body", {},
+      {{"frequency", "Hz", 3.0, 2.5, 3.5}, constant("reference", "s", 7.0)}, {0.1, 0.2});
   return {100.0, {"u", "v"}, "y", "N", body, {delay, tone}};
 }
 
@@ -115,12 +113,21 @@ TEST(ModelTest, ComplexityCountsWhatTheDataChose) {
   // Offset 1, numerators 6, denominator 2, delay 1, tone 2 + 1; its reference time is given.
   EXPECT_EQ(complexity(sut), 13u);
   // A moment found by search is chosen by the data, though the joint fit doesn't move it.
-  sut.effects.push_back({"regime_change",
-                         "step of the gain",
-                         {},
-                         {{"time", "s", 3.0, 0.0, 9.0, false}, {"change", "-", 0.1, -5.0, 5.0}},
-                         {}});
+  sut.effects.push_back(
+      made::effect_of("regime_change", "step of the gain", {},
+                      {{"time", "s", 3.0, 0.0, 9.0, false}, {"change", "-", 0.1, -5.0, 5.0}}));
   EXPECT_EQ(complexity(sut), 15u);
+  sut.effects.back().share = 0.5;
+  EXPECT_EQ(complexity(sut), 13u) << "in part it keeps its numbers";
+}
+
+// Eq. DG-66: within more than half of the time that its bound allows.
+TEST(ModelTest, APoleNearItsBoundDecaysWithinMoreThanHalfOfTheTime) {
+  for (const double share : {0.45, 0.55}) {
+    Body sut = with_poles({{std::pow(0.99, 1.0 / share), 0.0}, {0.5, 0.0}});
+    sut.largest_radius = 0.99;
+    EXPECT_EQ(is_near_bound(sut), share > 0.5) << share;
+  }
 }
 
 TEST(ModelTest, ABodyIsStableWithinTheUnitCircle) {

@@ -92,16 +92,19 @@ TEST(SeenRangeTest, AMapGoesOnStraight) {
   note_seen(limited, signals_of(1.0));
   const auto far = run_of(limited, 4.0);
   EXPECT_DOUBLE_EQ(*std::ranges::max_element(far), 0.5) << "a limit stays one";
+  // u^2 from -1.5 to -4, where u is at sample 75: a slope of -1 at most.
+  Model square = model_with(
+      made::effect_of("asymmetry", "square at the input", {"u"},
+                      {{"square_share", "-", 1.0, -2.0, 2.0}, constant("largest", "V", 1.0)}));
+  note_seen(square, signals_of(1.0));
+  EXPECT_NEAR(run_of(square, 4.0)[75], 2.25 + 2.5, 1e-9);
 }
 
 // Of the output with a cube: 2 N seen, then 20 N; phi is that of 3 N for ever.
 TEST(SeenRangeTest, ASpringsForceIsHeld) {
   Body body = made::two_pole_body();
-  const Effect spring{"nonlinear_stiffness",
-                      "cubic of the output",
-                      {},
-                      {{"threshold", "N", 10.0, 0.1, 90.0}},
-                      {-0.02, 0.0}};
+  const Effect spring = made::effect_of("nonlinear_stiffness", "cubic of the output", {},
+                                        {{"threshold", "N", 10.0, 0.1, 90.0}}, {-0.02, 0.0});
   Model sut = made::model_of(body, {spring});
   note_seen(sut, signals_of(1.0));
   const SeenRange& range = sut.effects[0].seen.at(0);
@@ -118,7 +121,7 @@ TEST(SeenRangeTest, WhatARecordingLeavesIsReportedWithItsShare) {
     const Signals signals = signals_of(scale);
     return left_ranges(model, input_ranges(signals_of(1.0)), signals, free_run(model, signals));
   };
-  EXPECT_THAT(left_at(0.9), testing::IsEmpty());
+  EXPECT_THAT(left_at(1.0), testing::IsEmpty()) << "no recording leaves its own range";
   const auto sut = left_at(2.0);
   ASSERT_THAT(sut, SizeIs(2));
   EXPECT_EQ(sut[0].effect, "") << "the body's input";
