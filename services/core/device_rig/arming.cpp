@@ -83,7 +83,6 @@ Arming::Output Arming::faulted(const Input& input) noexcept {
   const bool quiet = input.fresh && input.mode == DriveMode::kOff && !input.jumped;
   // Another trial, and a drive that is off and free of faults: it counts as found again.
   if (quiet && input.trial != blocked_trial_) {
-    stage_ = Stage::kFound;
     reason_ = Reason::kNone;
     return idle(input);
   }

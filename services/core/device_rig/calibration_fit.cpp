@@ -56,14 +56,13 @@ CalibrationFit calibration_fit(std::span<const CalibrationStep> steps) {
     throw ConfigError("readings", "the same one at every step", "a sensor that answers");
   }
   fit.zero = mean_y - fit.sensitivity * mean_x;
-  fit.low = fit.high = steps.front().known;
   double squares = 0.0;
   for (const CalibrationStep& step : steps) {
     const double off = step.reading - fit.zero - fit.sensitivity * step.known;
     squares += off * off;
     fit.residual = std::max(fit.residual, std::abs(off / fit.sensitivity));
     fit.noise = std::max(fit.noise, std::abs(step.spread / fit.sensitivity));
-    fit.low = std::min(fit.low, step.known);
+    fit.low = std::min(fit.low, step.known);  // 0 lies between
     fit.high = std::max(fit.high, step.known);
   }
   const double variance = squares / (count - 2.0);

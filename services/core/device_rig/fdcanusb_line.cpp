@@ -14,7 +14,7 @@ std::optional<std::uint32_t> number(std::string_view text) noexcept {
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
   const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && text.size() <= 8 ? std::optional(value) : std::nullopt;
+  return whole ? std::optional(value) : std::nullopt;
 }
 
 /// Takes the first word off a line.
@@ -109,7 +109,6 @@ Received read_line(std::string_view line, bool checked) noexcept {
   if (first != "rcv") return received;
   const auto identifier = number(word(line));
   if (!identifier || !read_payload(word(line), received.frame)) {
-    received.frame.size = 0;
     received.kind = Received::Kind::kDamaged;
     return received;
   }

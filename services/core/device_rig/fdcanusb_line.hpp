@@ -37,7 +37,7 @@ struct Received {
   };
   Kind kind = Kind::kOther;
   std::uint32_t identifier = 0;
-  Frame frame;
+  Frame frame;  ///< of kFrame
 };
 
 /// @param checked  a checksum is required

@@ -135,7 +135,6 @@ std::optional<std::uint32_t> FrameReader::varuint() noexcept {
 std::optional<FrameReader::Item> FrameReader::fail() noexcept {
   sound_ = false;
   rest_ = {};
-  left_ = 0;
   return std::nullopt;
 }
 

@@ -30,15 +30,12 @@ Steps steps_of(std::uint32_t address) noexcept {
     case kCommandKpScale:
     case kCommandKdScale:
     case kCommandIlimitScale:
+    case kAnalog1:
+    case kAnalog2:
       return {1.0 / 127.0, 1.0 / 32767.0, 1.0 / 2147483647.0};
     default:
-      break;
+      return {1.0, 1.0, 1.0};
   }
-  // Five pins on each of the two connectors.
-  const bool analog = (address >= kAnalog1 && address < kAnalog1 + 5) ||
-                      (address >= kAnalog2 && address < kAnalog2 + 5);
-  if (analog) return {1.0 / 127.0, 1.0 / 32767.0, 1.0 / 2147483647.0};
-  return {1.0, 1.0, 1.0};
 }
 
 }  // namespace

@@ -43,9 +43,8 @@ Mount::Mount(const std::string& key, const std::string& text) {
 
 // Every axis holds a share of every channel, if only a small one.
 std::array<double, 3> Mount::turned(const std::array<double, 3>& reading) const noexcept {
-  const double none = 0.0 * (reading[0] + reading[1] + reading[2]);
-  return {product(rows_[0], reading) + none, product(rows_[1], reading) + none,
-          product(rows_[2], reading) + none};
+  // A reading that is NaN makes every product NaN: 0 times NaN is.
+  return {product(rows_[0], reading), product(rows_[1], reading), product(rows_[2], reading)};
 }
 
 }  // namespace stillhand::device_rig

@@ -26,7 +26,7 @@ bool PlatformExchange::take(std::span<const std::uint8_t> datagram, std::int64_t
     // A sequence that stands is a packet that comes again; Moog's packets have none.
     if (sample_.count > 0 && reply.sequence == sample_.reply.sequence) return refuse();
     const std::uint32_t ago = sequence_ - reply.answers;
-    if (reply.answers == 0 || ago >= kKept || ago >= sequence_) return refuse();
+    if (ago >= kKept || ago >= sequence_) return refuse();  // 0 answers none
     at_ns = sent_ns_[reply.answers % kKept];
   }
   if (at_ns < sample_.at_ns) return refuse();
