@@ -72,23 +72,6 @@ TEST(CanRecordTest, AnIdentifierThatNeedsMoreThanElevenBitsIsExtended) {
   EXPECT_EQ(sut->identifier, 0x100u);
 }
 
-TEST(CanRecordTest, EveryFrameOfTheDriverHasALengthThatCanFdKnowsAndIsPaddedWithNops) {
-  constexpr std::array kLengths{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
-  for (const Frame& frame :
-       {torque_frame({1.0, 2.0, 0.02}), stop_frame(), query_frame(), serial_frame()}) {
-    const canfd_frame sut = kernels(record_of(0x8001, frame));
-    EXPECT_NE(std::ranges::find(kLengths, sut.len), kLengths.end()) << int{sut.len};
-  }
-  // Ten bytes of subframes: the last two are NOPs.
-  Frame padded;
-  FrameWriter writer(padded);
-  for (int i = 0; i < 5; ++i) writer.read(Resolution::kInt16, kMode, 3);
-  writer.pad();
-  ASSERT_EQ(padded.size, 12u);
-  EXPECT_EQ(kernels(record_of(0x8001, padded)).data[10], 0x50);
-  EXPECT_EQ(kernels(record_of(0x8001, padded)).data[11], 0x50);
-}
-
 TEST(CanRecordTest, WhatIsNoFrameOfTheBusIsNone) {
   canfd_frame frame{};
   const auto read = [&] {

@@ -55,10 +55,16 @@ TEST(ReadLineTest, AChecksumIsComparedAndTakenOff) {
   EXPECT_EQ(read_line("OK *BE", false).kind, Received::Kind::kDamaged);
 }
 
+// Of any number of bytes, none and the 64 of CAN-FD included.
 TEST(ReadLineTest, WhatIsNoPayloadIsDamaged) {
-  for (const char* line : {"rcv", "rcv 100", "rcv xyz 00", "rcv 100 0", "rcv 100 0g"}) {
-    const auto sut = read_line(line, false);
-    EXPECT_TRUE(sut.kind == Received::Kind::kDamaged || sut.frame.size == 0) << line;
+  for (const std::size_t size : {0u, 1u, 64u}) {
+    const auto sut = read_line("rcv 100 " + std::string(2 * size, '7'), false);
+    EXPECT_EQ(sut.kind, Received::Kind::kFrame) << size;
+    EXPECT_EQ(sut.frame.size, size);
+    for (const std::uint8_t each : sut.frame.payload()) EXPECT_EQ(each, 0x77);
+  }
+  for (const char* line : {"rcv", "rcv xyz 00", "rcv 100 0", "rcv 100 0g", "rcv 100 770g"}) {
+    EXPECT_EQ(read_line(line, false).kind, Received::Kind::kDamaged) << line;
   }
   const std::string too_long = "rcv 100 " + std::string(130, '0');
   EXPECT_EQ(read_line(too_long, false).kind, Received::Kind::kDamaged);

@@ -12,6 +12,7 @@
 
 #include "services/core/device_rig/fdcanusb_line.hpp"
 #include "tests/emulators/moteus_emulator.hpp"
+#include "tests/support/hex.hpp"
 
 namespace stillhand::device_rig::moteus::moteus_drive_test {
 
@@ -29,9 +30,9 @@ class TorqueFrameTest : public testing::Test {
     });
     return reply;
   }
-  DriveReply command(double torque_n_m) {
+  DriveReply command(double torque_n_m, double most_n_m = 2.0) {
     return exchange(
-        torque_frame({.torque_n_m = torque_n_m, .max_torque_n_m = 2.0, .watchdog_s = 0.02}));
+        torque_frame({.torque_n_m = torque_n_m, .max_torque_n_m = most_n_m, .watchdog_s = 0.02}));
   }
   void wait_ms(int count) {
     for (int i = 0; i < count; ++i) drive_.tick(now_ns_ += kMs_ns);
@@ -68,6 +69,7 @@ TEST(SerialFrameTest, IsThePacketOfTheDocument) {
   const std::vector<std::uint8_t> cut(reply.begin(), reply.end() - 4);
   EXPECT_FALSE(read_serial(cut));
   EXPECT_FALSE(read_serial(std::vector<std::uint8_t>{0x31, 0xa0, 0x02, 0x01}));
+  EXPECT_FALSE(read_serial(bytes("2804a002" + std::string(32, '0'))));
 }
 
 TEST_F(TorqueFrameTest, IsBoundedHereAndAtTheDrive) {
@@ -77,9 +79,22 @@ TEST_F(TorqueFrameTest, IsBoundedHereAndAtTheDrive) {
   EXPECT_EQ(drive_.torque_n_m(), 0.0);
   command(-std::numeric_limits<double>::infinity());
   EXPECT_EQ(drive_.torque_n_m(), 0.0);
+  for (const double most_n_m : {0.5, 0.0, -1.0, std::nan("")}) {
+    command(50.0, most_n_m);
+    EXPECT_EQ(drive_.torque_n_m(), most_n_m > 0.0 ? most_n_m : 0.0) << most_n_m;
+  }
 }
 
-TEST_F(TorqueFrameTest, FitsOneFrame) { EXPECT_LE(torque_frame({1.0, 2.0, 0.02}).size, 48u); }
+// By hand from can.md: mode 10; position NaN, velocity 0; torque 1; kp, kd 0; largest torque 2;
+// 0.02 s; integral 0; what is read: mode, position to torque, voltage to fault, inputs, counter.
+TEST_F(TorqueFrameTest, HasTheBytesOfTheDocument) {
+  const std::string query = "11001b01130d156015681570";
+  EXPECT_EQ(hex(query_frame().payload()), query);
+  EXPECT_EQ(hex(stop_frame().payload()), "010000" + query + "50");
+  EXPECT_EQ(
+      hex(torque_frame({1.0, 2.0, 0.02}).payload()),
+      "01000a0620008000000d220000803f022300000d25000000400d270ad7a33c012b00" + query + "5050");
+}
 
 TEST_F(TorqueFrameTest, EndsWithTheWatchdogAndLatchesUntilAStop) {
   command(0.8);

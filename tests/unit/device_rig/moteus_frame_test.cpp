@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/core/device_rig/moteus_drive.hpp"
@@ -38,6 +40,9 @@ TEST(FrameReaderTest, ReadsTheReplyThatTheMakerPrints) {
   EXPECT_NEAR(reply.voltage_v, 12.0, 0.25);
   EXPECT_NEAR(reply.temperature_c, 20.0, 0.5);
   EXPECT_EQ(reply.fault, 0);
+  EXPECT_FALSE(reply.refused);
+  // Behind it comes what no document knows.
+  EXPECT_FALSE(read_reply(bytes("2404000a005000000170ff230d18140060")).whole);
 }
 
 // The same reply, its mode and its fault as floats.
@@ -70,13 +75,15 @@ TEST(FrameWriterTest, WhatIsTooLargeForItsTypeIsTheLargestOfTheType) {
 }
 
 TEST(FrameWriterTest, PadsToALengthOfCanFd) {
-  Frame frame;
-  FrameWriter sut(frame);
-  sut.write(Resolution::kFloat, kCommandTorque, {1.0, 2.0, 3.0});
-  sut.pad();
-  EXPECT_EQ(frame.size, 16u);
-  EXPECT_EQ(frame.bytes[14], 0x50);
-  EXPECT_EQ(frame.bytes[15], 0x50);
+  for (const auto& [from, to] : std::vector<std::pair<std::size_t, std::size_t>>{
+           {3, 3}, {9, 12}, {13, 16}, {17, 20}, {21, 24}, {25, 32}, {33, 48}, {49, 64}}) {
+    Frame frame;
+    FrameWriter sut(frame);
+    sut.to_console(std::string(from - 3, 'x'));  // behind three bytes
+    sut.pad();
+    EXPECT_EQ(frame.size, to);
+    for (std::size_t at = from; at < to; ++at) EXPECT_EQ(frame.bytes[at], 0x50);
+  }
 }
 
 TEST(FrameWriterTest, AFrameThatIsFullSaysSo) {
@@ -117,6 +124,24 @@ TEST(FrameReaderTest, AnErrorOfARegisterIsAnItem) {
   EXPECT_EQ(item->kind, FrameReader::Kind::kReadError);
   EXPECT_EQ(item->address, 0x60u);
   EXPECT_TRUE(read_reply(payload).refused);
+  EXPECT_TRUE(read_reply(bytes("306001")).refused) << "of a write";
+}
+
+// mjbots/moteus, docs/protocol/registers.md, the mappings: int8, int16, int32.
+TEST(StepOfTest, IsTheOneOfTheDocument) {
+  const std::pair<std::uint32_t, std::array<double, 3>> cases[]{
+      {kPosition, {0.01, 0.0001, 0.00001}},
+      {kVelocity, {0.1, 0.00025, 0.00001}},
+      {kTorque, {0.5, 0.01, 0.001}},
+      {kVoltage, {0.5, 0.1, 0.001}},
+      {kTemperature, {1.0, 0.1, 0.001}},
+      {kCommandTimeout, {0.01, 0.001, 0.000001}},
+      {kAnalog1, {1.0 / 127, 1.0 / 32767, 1.0 / 2147483647}}};
+  for (const auto& [address, steps] : cases) {
+    for (std::uint8_t i = 0; i < 3; ++i) {
+      EXPECT_DOUBLE_EQ(step_of(address, static_cast<Resolution>(i)), steps[i]) << address;
+    }
+  }
 }
 
 }  // namespace stillhand::device_rig::moteus::moteus_frame_test

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/hex.hpp"
+
 namespace stillhand::device_rig::moteus::moteus_settings_test {
 
 constexpr SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
@@ -44,6 +46,7 @@ TEST(AskSettingTest, TheLongestNameFitsAFrame) {
                            frame.bytes.begin() + static_cast<long>(frame.size));
     EXPECT_THAT(text, testing::HasSubstr("conf get " + std::string(name) + "\n"));
   }
+  EXPECT_EQ(hex(poll_setting().payload()), "420130");  // can.md: 48 bytes of channel 1
 }
 
 TEST(ConsoleAnswerTest, IsALineFromPieces) {
