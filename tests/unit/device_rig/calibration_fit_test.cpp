@@ -86,6 +86,7 @@ TEST(CalibrationFitTest, RefusesStepsThatDetermineNoLine) {
       {},
       {{0.0, 1.0}, {1.0, 2.0}, {0.0, 1.0}},
       {{0.0, 1.0}, {1.0, 2.0}, {2.0, 3.0}, {0.0, 1.0}},
+      {{0.0, 1.0}, {-1.0, 0.0}, {-2.0, -1.0}, {0.0, 1.0}},
       {{0.0, 1.0}, {1.0, nan}, {-1.0, 0.0}},
       {{0.0, 1.0}, {1.0, 1.0}, {-1.0, 1.0}}};
   for (const auto& each : bad) EXPECT_THROW(calibration_fit(each), ConfigError);

@@ -20,6 +20,7 @@ TEST(PartsTest, TheDefaultsNeedNoDevice) {
   const Parts sut = parts_of({});
   EXPECT_FALSE(sut.needs_drive());
   EXPECT_FALSE(sut.needs_platform());
+  EXPECT_FALSE(sut.any_device());
   EXPECT_EQ(in_words({}), "everything simulated");
 }
 
@@ -45,6 +46,7 @@ TEST(PartsTest, AnIioDeviceServesAccelerationOrForceWithoutADrive) {
   EXPECT_EQ(sut.acceleration, Parts::Source::kIio);
   EXPECT_EQ(sut.force, Parts::Source::kIio);
   EXPECT_FALSE(sut.needs_drive());
+  EXPECT_TRUE(sut.any_device());
   config.signals.angle = "iio";
   EXPECT_THAT(refusal(config), testing::HasSubstr("devices.signals.angle: got iio, want one of"));
 }
@@ -87,6 +89,8 @@ TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
   config.drive.watchdog_s = 0.02;
   config.drive.period_ticks = 10;
   EXPECT_THAT(refusal(config), testing::HasSubstr("three times"));
+  config.drive.watchdog_s = 0.03;
+  EXPECT_EQ(refusal(config), "accepted");
 }
 
 TEST(LoadDevicesTest, AWordThatIsNoPartIsRefusedWithFileKeyAndTheWordsThatThereAre) {

@@ -41,10 +41,14 @@ TEST_F(PlatformExchangeTest, AReplyThatComesAgainOrTooLateOrAnswersNothingIsNone
   EXPECT_EQ(other.sample().damaged, 1u);
 }
 
+// The time of the first one is that of the newest, by its place: it would look young.
 TEST_F(PlatformExchangeTest, ACommandOfLongAgoIsForgotten) {
   const auto first = ask(1000 * kMs);
-  for (int i = 1; i < 300; ++i) ask((1000 + i) * kMs);
+  const auto second = ask(1001 * kMs);
+  for (int i = 2; i <= 256; ++i) ask((1000 + i) * kMs);
   EXPECT_FALSE(sut_.take(first, 1300 * kMs));
+  EXPECT_TRUE(sut_.take(second, 1300 * kMs));
+  EXPECT_EQ(sut_.sample().at_ns, 1001 * kMs);
 }
 
 }  // namespace stillhand::device_rig::platform_exchange_test

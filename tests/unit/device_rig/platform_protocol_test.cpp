@@ -33,9 +33,10 @@ constexpr const char* kPlainSenseless[]{
     "0000000004500325",
     "53485053020002000900000007000000cdab341200000000000000000000000000000000000000000000f07f"
     "0000000002eee11f"};
+// The state 3 with fault bits 5.
 constexpr const char* kPlainUnmeasured =
-    "53485053020002000900000007000000cdab34127b14ae47e17aa43f0000000000000000000000000000f87f"
-    "00000000d5f6fdb5";
+    "53485053020003000900000007000000cdab34127b14ae47e17aa43f0000000000000000000000000000f87f"
+    "0500000009821a23";
 constexpr std::uint32_t kToken = 0x1234abcd;
 constexpr const char* kMoogCommand =
     "000000820000000000000000be428f5c00000000000000003d4ccccd00000000";
@@ -51,7 +52,10 @@ TEST(PlainPlatformTest, AStateWithoutANumberIsRefusedAndAnAccelerationMayBeUnmea
   for (const char* const senseless : kPlainSenseless) {
     EXPECT_FALSE(plain::read_reply(bytes(senseless)).whole) << senseless;
   }
-  EXPECT_TRUE(plain::read_reply(bytes(kPlainUnmeasured)).whole);
+  const PlatformReply sut = plain::read_reply(bytes(kPlainUnmeasured));
+  EXPECT_TRUE(sut.whole);
+  EXPECT_EQ(sut.stage, PlatformStage::kFault);
+  EXPECT_EQ(sut.fault, 5u);
 }
 
 TEST(PlainPlatformTest, ASetPointWithoutANumberAsksForNoMotion) {
@@ -154,6 +158,7 @@ TEST(MoogPlatformTest, EngagesWhenAskedParksWhenNotAndNeverResetsAFault) {
   EXPECT_EQ(word({}, 3), moog::kPark);
   EXPECT_EQ(word({.order = PlatformOrder::kHold}, 3), moog::kNewPosition);
   EXPECT_EQ(word({.order = PlatformOrder::kHold}, 2), moog::kPark);
+  for (const std::uint32_t busy : {0, 4, 5, 6, 7}) EXPECT_EQ(word(follow, busy), moog::kPark);
   for (std::uint32_t fault = 8; fault < 16; ++fault) EXPECT_EQ(word(follow, fault), moog::kDisable);
 }
 

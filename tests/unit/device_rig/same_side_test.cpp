@@ -31,12 +31,17 @@ TEST(SameSideTest, ASensorThatIsTurnedRoundIsOpposed) {
 }
 
 // A platform of 6 Hz is some 30 ms behind its set-point.
-TEST(SameSideTest, ALaggingPlatformIsNotOpposed) {
+TEST(SameSideTest, ALaggingPlatformIsNotOpposedByItsLagAlone) {
   for (const double lag : {0.0, 30.0, 60.0}) EXPECT_FALSE(after(10'000, 0.1, lag).opposed());
+  // Of whole cycles the correlation is -(cos(0.9 w) + 0.49 cos(2.3 w))/1.49, w = 2 pi lag: -0.40
+  // and -0.26, on both sides of -0.3.
+  EXPECT_TRUE(after(10'000, -0.1, 130.0).opposed());
+  EXPECT_FALSE(after(10'000, -0.1, 150.0).opposed());
 }
 
 TEST(SameSideTest, WithoutMotionItIsSilent) {
-  EXPECT_FALSE(after(10'000, -0.1, 0.0, 0.1).opposed());
+  EXPECT_FALSE(after(10'000, -0.1, 0.0, 0.1).opposed());  // 0.09 m/s^2 RMS
+  EXPECT_TRUE(after(10'000, -0.1, 0.0, 0.3).opposed());   // 0.26
   SameSide sut;
   for (int tick = 0; tick < 5000; ++tick) sut.step(0.0, 0.0);
   EXPECT_FALSE(sut.opposed());
