@@ -24,10 +24,11 @@ std::string name_of(const Prompt& prompt, const Trial& trial) {
 }
 
 // The last number of a countdown is 1: it stands for the second before the begin.
+// @param left_ticks  1 or more
 void count_down(Page& page, Tick left_ticks) {
   const double left_s = seconds(left_ticks);
-  page.large = left_s > 10.0 ? clock_text(left_s)
-                             : std::to_string(static_cast<long>(std::max(std::ceil(left_s), 1.0)));
+  page.large =
+      left_s > 10.0 ? clock_text(left_s) : std::to_string(static_cast<long>(std::ceil(left_s)));
 }
 
 Page link_lost(const Prompt& prompt, const Moment& moment) {

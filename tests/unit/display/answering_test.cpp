@@ -19,6 +19,8 @@ class AnsweringTest : public testing::Test {
 };
 
 TEST_F(AnsweringTest, AChoiceIsNoAnswerBeforeItIsConfirmed) {
+  sut_.confirm();
+  EXPECT_FALSE(sut_.answer()) << "nothing is chosen";
   sut_.choose(3);
   EXPECT_EQ(sut_.chosen(), 3);
   EXPECT_FALSE(sut_.answer());
@@ -48,11 +50,6 @@ TEST_F(AnsweringTest, LeftAndRightChooseTheNeighbourWithinTheScale) {
   sut_.move(1);
   sut_.move(-1);
   EXPECT_EQ(sut_.chosen(), 0);
-}
-
-TEST_F(AnsweringTest, NothingChosenCannotBeConfirmed) {
-  sut_.confirm();
-  EXPECT_FALSE(sut_.answer());
 }
 
 TEST_F(AnsweringTest, AValueBeyondTheScaleIsNotChosen) {

@@ -14,6 +14,8 @@ TEST(CommandInUseTest, TheNewestCommandIsTakenForTenTicks) {
   CommandInUse sut;
   EXPECT_EQ(sut.at(5).tick, -1);
   EXPECT_EQ(sut.at(5).angle_rad, 0.0);
+  sut.offer({-1, 0.25});
+  EXPECT_EQ(sut.at(5).angle_rad, 0.0);
   sut.offer({100, 0.25});
   EXPECT_EQ(sut.at(100).angle_rad, 0.25);
   EXPECT_EQ(sut.at(101).tick, 100);

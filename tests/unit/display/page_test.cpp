@@ -75,7 +75,7 @@ TEST_F(PageTest, AFreeStickIsHeldOverTheTaskWithItsInstructionsInView) {
     const Page shown = page(shows, at(23'400, TrialPhase::kFree));
     EXPECT_EQ(shown.heading, "");
     EXPECT_EQ(shown.corner_right, "0:07");
-    const Page after = page(shows, at(30'500, TrialPhase::kFree));
+    const Page after = page(shows, at(30'000, TrialPhase::kFree));
     EXPECT_EQ(after.heading, "Over");
     EXPECT_THAT(after.lines, IsEmpty());
     for (const Page& each : {before, shown, after}) {
@@ -104,6 +104,8 @@ TEST_F(PageTest, ARestCountsDownToTheSameInstant) {
   Prompt resting = prompt(PromptKind::kTrial);
   resting.end_tick = 90'000;
   EXPECT_EQ(page(resting, at(45'000)).large, "0:45");
+  EXPECT_EQ(page(resting, at(79'500)).large, "0:11");
+  EXPECT_EQ(page(resting, at(80'000)).large, "10");
   EXPECT_EQ(page(resting, at(85'500)).large, "5");
   EXPECT_EQ(page(resting, at(85'500)).caption, "begins in");
   EXPECT_THAT(page(resting, at(90'000)).lines, ElementsAre("Please wait"));
@@ -124,7 +126,8 @@ TEST_F(PageTest, PracticeIsNamed) {
 
 TEST_F(PageTest, WithoutAProtocolTheTrialHasTheNumberOfItsRecording) {
   EXPECT_EQ(page({}, at(25'000)).corner_left, "Trial 10");
-  EXPECT_EQ(page({}, at(90'000)).heading, "Hold");
+  EXPECT_EQ(page({}, at(31'999)).heading, "Over");
+  EXPECT_EQ(page({}, at(32'000)).heading, "Hold") << "behind the ramp";
 }
 
 TEST_F(PageTest, ThePeggedTrialSaysWhatToDoAndHowLong) {
@@ -195,6 +198,7 @@ TEST_F(PageTest, WithAGamepadTheHintNamesItsButtons) {
 
 TEST_F(PageTest, TheEndThanks) {
   EXPECT_EQ(page(prompt(PromptKind::kEnd), at(50'000)).heading, "Thank you");
+  EXPECT_EQ(page(prompt(PromptKind::kEnd), at(50'000)).button, "");
 }
 
 TEST_F(PageTest, AnOldPictureSaysSoWhateverIsAsked) {
@@ -203,6 +207,7 @@ TEST_F(PageTest, AnOldPictureSaysSoWhateverIsAsked) {
     moment.fresh = false;
     EXPECT_EQ(page(prompt(kind), moment).heading, "Link lost");
   }
+  EXPECT_EQ(page({}, {.fresh = false}).heading, "Please wait") << "no tick came yet";
 }
 
 TEST_F(PageTest, ARunningTrialHidesEveryOtherPrompt) {

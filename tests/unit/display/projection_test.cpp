@@ -46,6 +46,7 @@ TEST(ProjectionTest, PixelsLeadBackToMetres) {
 
 TEST(ProjectionTest, ImpossibleImagesAreRefused) {
   EXPECT_THROW(Projection(ScreenConfig{}, 15, 768), ConfigError);
+  EXPECT_NO_THROW(Projection(ScreenConfig{}, 16, 768));
   EXPECT_THROW(Projection(ScreenConfig{}, 1024, 0), ConfigError);
   EXPECT_THROW(Projection(ScreenConfig{}, 1 << 20, 768), ConfigError);
   const ScreenConfig flat{.width_m = 0.0};

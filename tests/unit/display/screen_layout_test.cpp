@@ -61,7 +61,8 @@ TEST(ScreenLayoutTest, ABoxThatLeavesTheScreenIsRefused) {
   EXPECT_THROW(ScreenLayout(screen, kBox_m), ConfigError);  // below its own range of 20 mm
   screen.track_above_bottom_m = 0.0200;
   EXPECT_NO_THROW(ScreenLayout(screen, kBox_m));
-  EXPECT_THROW(ScreenLayout(screen, 0.050), ConfigError);
+  EXPECT_NO_THROW(ScreenLayout(screen, 0.0385));            // 19.75 mm with half a line
+  EXPECT_THROW(ScreenLayout(screen, 0.0395), ConfigError);  // 20.25 mm
 }
 
 }  // namespace stillhand::display::screen_layout_test

@@ -46,8 +46,12 @@ TEST(TrackingDisplayTest, OutsideTheTrialTheTargetStandsInTheCentre) {
   for (Tick tick = kStart + kDuration + kRamp; tick < kStart + kDuration + 2 * kRamp; ++tick) {
     ASSERT_EQ(sut.step({tick, 0.0}).target_m, 0.0);
   }
+  for (const auto& [number, start] : {std::pair{1, kStart}, {0, kStart + 500}}) {
+    sut.postpone({.number = number, .start_tick = kStart + 500});
+    EXPECT_EQ(sut.trial().start_tick, start) << "another trial is not postponed";
+  }
   sut.disarm();
-  EXPECT_EQ(sut.step({kStart + 100, 0.0}).target_m, 0.0);
+  EXPECT_EQ(sut.step({kStart + 600, 0.0}).target_m, 0.0);
 }
 
 // Largest speed of the reference: w A summed over the lines; the ramp adds at most its own slope,
@@ -92,6 +96,10 @@ TEST(TrackingDisplayTest, TheRampsRiseAndFallMonotonously) {
     last = share(tick);
   }
   EXPECT_NEAR(last, 0.0, 1e-6);
+  // Next to the measured part, and so all over, they mirror each other.
+  for (const Tick n : {0, 700}) {
+    EXPECT_NEAR(share(kStart - 1 - n), share(kStart + kDuration + n), 1e-12);
+  }
 }
 
 TEST(TrackingDisplayTest, InsideMeansTheCrossesCentreIsBetweenTheBoxesSides) {
