@@ -76,7 +76,6 @@ TEST(ConditionsTest, EveryNameIsThatOfOneConditionAndComesBack) {
   EXPECT_EQ(title_of(Condition::kF, " (", ")"), "F (arm rest)");
   EXPECT_EQ(title_of(Condition::kDampingForce), "damping+force");
   EXPECT_EQ(mitigation_name(Condition::kF), "arm-rest");
-  EXPECT_STREQ(name_of(Condition::kFreeIdentification), "J");
 }
 
 // C' and C+ are C with another model; to a screen or a recording their trials are those of C.

@@ -79,7 +79,11 @@ SessionRecording session(const std::vector<Stop>& stops) {
   return out;
 }
 
-TEST(MissesTest, ASessionInTimeHasNone) { EXPECT_THAT(misses_in(session({})), IsEmpty()); }
+TEST(MissesTest, ASessionInTimeHasNone) {
+  EXPECT_THAT(misses_in(session({})), IsEmpty());
+  EXPECT_THAT(misses_in(session({{"sensing", 2000, 2004}})), IsEmpty()) << "less than 5 ms";
+  EXPECT_THAT(misses_in(session({{"sensing", 2000, 2006}})), SizeIs(1));
+}
 
 TEST(MissesTest, WhoStandsIsNamedWithTimeLengthForceAndWhoWaited) {
   const auto sut = misses_in(session({{"sensing", 2000, 2073}}));
@@ -117,12 +121,15 @@ TEST(MissesTest, TwoThatStandOneAfterTheOtherAreTwo) {
   EXPECT_EQ(sut[1].process, "sensing");
 }
 
-// Sensing comes back, and cancellation stands for another 60 ms.
+// Sensing comes back after 20 ms, and cancellation stands for another 60; behind half of its
+// silence it is late by itself no more.
 TEST(MissesTest, WhoStandsLongerThanItsSourceIsLateByItself) {
   const auto sut = misses_in(session({{"sensing", 2000, 2020}, {"cancellation", 2000, 2080}}));
   ASSERT_THAT(sut, SizeIs(2));
   EXPECT_EQ(std::min(sut[0].late_s, sut[1].late_s) < 0.03, true);
   EXPECT_NEAR(std::max(sut[0].late_s, sut[1].late_s), 0.08, 1e-3);
+  EXPECT_THAT(misses_in(session({{"sensing", 2000, 2045}, {"cancellation", 2000, 2080}})),
+              SizeIs(1));
 }
 
 TEST(MissesTest, AForceThatDoesNotComeBackIsSaid) {
@@ -207,6 +214,7 @@ TEST(MissesTest, TheReasonIsWhatTheProcessSaidOfThisSilence) {
   EXPECT_EQ(why("sensing", 2200, 73'400), "stopped by a signal");
   EXPECT_EQ(why("cancellation", 2200, 73'400), "");
   EXPECT_EQ(why("sensing", 1900, 73'400), "");
+  EXPECT_EQ(why("sensing", 3100, 73'400), "") << "more than a second later";
   EXPECT_EQ(why("sensing", 2200, 20'000), "");
 }
 

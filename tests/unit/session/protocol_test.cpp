@@ -69,13 +69,6 @@ TEST(ProtocolTest, NoTwoTrialsShareMotionOrTarget) {
   EXPECT_EQ(targets.size(), trials.size());  // the pegged trial's is 0
 }
 
-TEST(ProtocolTest, OnlyCMovesAndCancels) {
-  for (const PlannedTrial& trial : plan(three_conditions(1))) {
-    EXPECT_EQ(trial.cancellation, trial.label == Condition::kC);
-    EXPECT_EQ(trial.moving, trial.label != Condition::kA);
-  }
-}
-
 TEST(ProtocolTest, APerturbedTrialIsOnThePegAndWithoutTheMotorIfTheStickIsHeld) {
   for (const bool held : {false, true}) {
     const ProtocolOptions options{.conditions = {Condition::kP}, .stick_held = held};
@@ -131,31 +124,23 @@ TEST(ProtocolTest, ARoadBeyondItsBoundsIsRefusedAndNamed) {
   EXPECT_EQ(road_error(road("H", 70.0)), "accepted");
 }
 
-class BadConditionsTest : public testing::TestWithParam<const char*> {};
-
-TEST_P(BadConditionsTest, AreRefusedAndNamed) {
-  EXPECT_THAT(support::refusal([&] { parse_conditions(GetParam()); }),
-              testing::StartsWith("--conditions: got "));
+TEST(ProtocolTest, BadConditionsAreRefusedAndNamed) {
+  for (const char* text : {"", "D", "F", "G", "A,D", "A,A", "a", "A,,B", "AB", "A B"}) {
+    EXPECT_THAT(support::refusal([&] { parse_conditions(text); }),
+                testing::StartsWith("--conditions: got "));
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(Words, BadConditionsTest,
-                         testing::Values("", "D", "A,D", "A,A", "a", "A,,B", "AB", "A B"));
-
-class BadDurationTest : public testing::TestWithParam<double> {};
-
-TEST_P(BadDurationTest, IsRefused) {
-  ProtocolOptions options = three_conditions(1);
-  options.trial_s = GetParam();
-  EXPECT_THROW(plan(options), ConfigError);
-  options = three_conditions(1);
-  options.identify_s = GetParam();
-  EXPECT_THROW(plan(options), ConfigError);
+TEST(ProtocolTest, ABadDurationIsRefused) {
+  for (const double seconds : {-1.0, 0.0, 4.9, 3601.0, std::numeric_limits<double>::infinity(),
+                               std::numeric_limits<double>::quiet_NaN()}) {
+    for (double ProtocolOptions::* of : {&ProtocolOptions::trial_s, &ProtocolOptions::identify_s}) {
+      ProtocolOptions options = three_conditions(1);
+      options.*of = seconds;
+      EXPECT_THROW(plan(options), ConfigError) << seconds;
+    }
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Seconds, BadDurationTest,
-                         testing::Values(-1.0, 0.0, 4.9, 3601.0,
-                                         std::numeric_limits<double>::infinity(),
-                                         std::numeric_limits<double>::quiet_NaN()));
 
 // "got 3600, want 5 to 3600 seconds" would leave the operator without the reason.
 TEST(ProtocolTest, ARefusedNumberIsShownWithTheDigitsThatMakeItWrong) {
@@ -213,12 +198,6 @@ TEST(ProtocolTest, OfAStudysConditionsOnlyCCancelsAndOnlyDFilters) {
     EXPECT_EQ(trial.command_filter, trial.label == Condition::kD) << name_of(trial.label);
     EXPECT_EQ(trial.moving, trial.label != Condition::kA) << name_of(trial.label);
   }
-}
-
-TEST(ProtocolTest, ConditionsOfAStudyAreNotThoseOfALab) {
-  EXPECT_EQ(parse_conditions("F", kStudyConditions).front(), Condition::kF);
-  EXPECT_THROW(parse_conditions("F", kLabConditions), ConfigError);
-  EXPECT_THROW(parse_conditions("G", kStudyConditions), ConfigError);
 }
 
 TEST(MotionProfileTest, IsStillWhereThePlatformDoesNotMove) {

@@ -272,6 +272,9 @@ TEST(EvaluateTest, ATrialThatDoesNotMoveHasNoShareAndOneThatDoesNotCancelHasNoDe
   EXPECT_NEAR(moving.trials.at(0).cancelled_share, 0.0, 1e-12);
   EXPECT_TRUE(std::isnan(moving.trials[0].counterforce_delay_s));
   EXPECT_FALSE(moving.trials[0].sensor_to_command.has_value());
+  // Without a model there is no cost of it.
+  EXPECT_FALSE(moving.model.has_value());
+  EXPECT_FALSE(moving.conversion.has_value());
 }
 
 // 1 us, 2 us, ... 5000 us, in another order; commands outside the trial, and one that answers no
@@ -367,13 +370,6 @@ TEST(EvaluateTest, TheNewestModelIsTakenAndAnUnusableOneIsNotJudged) {
   const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
   ASSERT_TRUE(sut.model.has_value());
   EXPECT_FALSE(sut.model->usable());
-  EXPECT_FALSE(sut.conversion.has_value());
-}
-
-TEST(EvaluateTest, WithoutAModelThereIsNoneAndNoCost) {
-  ForcedTape tape(0.0, 0);
-  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kB, kStart)});
-  EXPECT_FALSE(sut.model.has_value());
   EXPECT_FALSE(sut.conversion.has_value());
 }
 

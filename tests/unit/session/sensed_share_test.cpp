@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "apps/libraries/session/jackknife.hpp"
+
 namespace stillhand::session::sensed_share_test {
 namespace {
 
@@ -59,6 +61,13 @@ TEST(SensedShareTest, ItsIntervalHoldsTheTruthAsOftenAsItSays) {
   EXPECT_GE(inside, 178);
   EXPECT_LE(inside, 199);
   EXPECT_NEAR(mean, 0.7, 0.02);
+}
+
+// Of 0 to 9: 9/10 of the squares about 4.5, which are 82.5; t of 9 degrees of freedom by the table.
+TEST(JackknifeTest, IsMillersVarianceAndTheTableOfStudentsT) {
+  const auto place = [](std::size_t j) { return static_cast<double>(j); };
+  EXPECT_NEAR(jackknife_variance(place), 74.25, 1e-12);
+  EXPECT_NEAR(jackknife_reach(4.0), 2.0 * 2.262, 1e-3);
 }
 
 TEST(SensedShareTest, AShortTrialAndAStandingPlatformSayNothing) {
