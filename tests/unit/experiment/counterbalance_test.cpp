@@ -86,14 +86,6 @@ TEST(CounterbalanceTest, AWilliamsRoundHasEachConditionAndEachPairOfNeighboursEq
   }
 }
 
-// 12 participants in A, B, C: two rounds of six.
-TEST(CounterbalanceTest, ThePapersTwelveParticipantsAreBalanced) {
-  Square sut;
-  for (std::size_t i = 0; i < 12; ++i) sut.push_back(condition_order(Order::kWilliams, 3, 1, i, 0));
-  expect_all_equal(at_places(sut), 9, 4);
-  expect_all_equal(neighbours(sut), 6, 4);
-}
-
 TEST(CounterbalanceTest, RandomOrdersDifferBetweenParticipantsAndFollowFromTheSeed) {
   Square sut, again;
   for (std::size_t i = 0; i < 60; ++i) {

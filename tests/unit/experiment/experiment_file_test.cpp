@@ -82,8 +82,25 @@ TEST(ExperimentFileTest, WhatNoSessionCanRunIsNamed) {
   EXPECT_THAT(refusal("questions: [{name: a, text: \"one\\ntwo\"}]"), HasSubstr("one line"));
 }
 
+// The bounds of what the screen shows; a name is of letters, digits and _.
+TEST(ExperimentFileTest, AQuestionKeepsTheBoundsOfTheScreen) {
+  Design design;
+  design.questions = {{"azAZ09_", Question::After::kEnd, std::string(100, 'm'), "", "", 9}};
+  Question& sut = design.questions[0];
+  sut.highest.assign(40, 'm');
+  EXPECT_NO_THROW(check(design));
+  for (const std::int64_t steps : {1, 2, 10}) {
+    sut.steps = steps;
+    EXPECT_EQ(support::refusal([&] { check(design); }) == "accepted", steps == 2) << steps;
+  }
+  sut.steps = 2;
+  sut.text += 'm';
+  EXPECT_THROW(check(design), ConfigError);
+}
+
 TEST(ExperimentFileTest, ACodeIsACodeAndNeverAName) {
   EXPECT_EQ(participant_index("P07", 12), 6u);
+  EXPECT_EQ(participant_index("P12", 12), 11u);
   EXPECT_EQ(participant_code(6), "P07");
   EXPECT_EQ(participant_index("P100", 120), 99u);
   for (const char* wrong : {"P7", "p07", "P007", "P13", "P00", "Ann", "", "P", "P07 ", "../P07"}) {
