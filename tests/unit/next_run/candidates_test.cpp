@@ -68,6 +68,7 @@ TEST(CandidatesTest, ARivalMayHaveABodyOfAnotherOrder) {
   ASSERT_EQ(sut.size(), 2U);
   for (const Candidate& each : sut) {
     EXPECT_EQ(each.model.effects.back().coefficients.size(), each.model.body.order());
+    EXPECT_EQ(each.cause().kind, "coupled_input");
   }
 }
 

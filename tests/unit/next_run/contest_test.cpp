@@ -48,7 +48,8 @@ TEST(ContestTest, ASlowRecordingHasBlocksToo) {
 // Eq. NR-3 in closed form.  The recording has 3200 samples behind its first second, the run 2000.
 // d of the rival costs c^2 2000 for x, d^2 2000 for z, and (d - c)^2 3200 against the recording.
 TEST(ContestTest, TheRivalIsFittedToBothRuns) {
-  const Contest sut = made::tied();
+  const Contest sut = made::tied(2.0);
+  EXPECT_NEAR(sut.noise_rms(), 2.0, 0.1);  // of 3200 samples known to 1/sqrt 6400
   const double c = sut.candidates()[0].cause().coefficients[0] / sut.noise_rms();
   const double expected = c * c * (2000.0 + 2000.0 * 3200.0 / 5200.0);
   const auto run = made::measured(2100, 8, 2);
@@ -59,8 +60,10 @@ TEST(ContestTest, TheRivalIsFittedToBothRuns) {
   const double error =
       2.0 * std::sqrt(c * c * (2000.0 + 2000.0 * 3200.0 / 5200.0 * 3200.0 / 5200.0));
   EXPECT_LT(sut.expected(run, 0).standard_error(0, 1), 1.5 * error);
-  // Both have as many numbers, as well determined.
-  EXPECT_NEAR(sut.expected(run, 0).price[0], sut.expected(run, 0).price[1], 1e-6);
+  // Both have an offset, a gain and the force of a channel, each determined by itself: ln(1 + N).
+  for (const double price : sut.expected(run, 0).price) {
+    EXPECT_NEAR(price, 3.0 * std::log(5201.0 / 3201.0), 0.01);
+  }
 }
 
 TEST(ContestTest, ARunThatRepeatsTheTieSeparatesNothing) {
@@ -83,6 +86,7 @@ TEST(ContestTest, TheChanceIsThatOfANoncentralRatio) {
   // What the rival pays for its numbers in the run counts: Phi((36 + 16 - 40)/12).
   expected.price[1] = 16.0;
   EXPECT_NEAR(sut.chance(expected)(0, 1), 0.8413, 1e-3);
+  EXPECT_NEAR(sut.chance(expected)(1, 0), 0.0, 1e-3);  // Phi((1 - 16 - 6)/2)
 }
 
 TEST(ContestTest, ARunInWhichTheyDifferLeavesTheTrueOne) {
@@ -93,6 +97,29 @@ TEST(ContestTest, ARunInWhichTheyDifferLeavesTheTrueOne) {
   // As expected, to four deviations of 2 sqrt(separation).
   const double expected = sut.expected(made::measured(2100, 8, 2), 5).separation(0, 1);
   EXPECT_NEAR(after.twice_log_ratio(0, 1), expected, 8.0 * std::sqrt(expected));
+}
+
+// Eq. NR-4: without noise the run adds what Eq. NR-3 expects.
+TEST(ContestTest, ARunWithoutNoiseAddsTheSeparation) {
+  const Contest sut = made::tied(2.0);
+  auto run = made::measured(2100, 8, 2);
+  run.channels.back().values = sut.prediction(0, run);
+  const double separation = sut.expected(run, 20).separation(0, 1);
+  EXPECT_NEAR(sut.with(run).twice_log_ratio(0, 1), separation, 1e-3 * separation);
+}
+
+// Eq. NR-5: 6, and two standard errors.
+TEST(EvidenceTest, StrongEvidenceBeatsARival) {
+  Evidence sut{Eigen::MatrixXd::Zero(2, 2), Eigen::MatrixXd::Zero(2, 2)};
+  const auto settled = [&](double ratio, double error) {
+    sut.twice_log_ratio(0, 1) = ratio;
+    sut.standard_error(0, 1) = error;
+    return sut.settled(0, 1);
+  };
+  EXPECT_FALSE(settled(5.9, 0.0));
+  EXPECT_FALSE(settled(7.9, 4.0));
+  EXPECT_TRUE(settled(8.0, 4.0));
+  EXPECT_TRUE(settled(6.0, 3.0));
 }
 
 TEST(ContestTest, ARepetitionLeavesBoth) {
