@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "services/core/contract/config_error.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
@@ -22,16 +25,6 @@ Bounds bounds() {
   bounds.ride.duration_ticks = 20'000;
   bounds.ride.ramp_ticks = 2'000;
   return bounds;
-}
-
-double rms_between(const motion::MotionTrajectory& motion, double from_s, double to_s) {
-  double square = 0.0;
-  const auto first = static_cast<Tick>(1000.0 * from_s);
-  const auto end = static_cast<Tick>(1000.0 * to_s);
-  for (Tick n = first; n < end; ++n) {
-    square += std::pow(motion.at(motion.ramp_ticks() + n).acceleration_m_s2, 2);
-  }
-  return std::sqrt(square / static_cast<double>(end - first));
 }
 
 class EveryFamily : public testing::TestWithParam<Family> {};
@@ -54,17 +47,33 @@ TEST_P(EveryFamily, PartOfTheLevelIsThatPartOfTheMotion) {
   EXPECT_NEAR(half.motion.report().rms_m_s2 / whole.motion.report().rms_m_s2, 0.5, 0.03);
 }
 
+// Over a band acceleration over speed lies between its ends.  Here the peak binds, with the margin
+// of 2 % for what the ride's filter does to it.
+TEST_P(EveryFamily, HasItsBandAndAMarginOfThePeak) {
+  const Ride sut = ride_of({GetParam(), 3.0, 4.0, 1.0, 1.0, 1}, bounds());
+  const auto peak = std::ranges::max(sut.accel_m_s2, {}, [](double a) { return std::abs(a); });
+  EXPECT_LE(std::abs(peak), 0.98 * 7.35 + 1e-9);
+  EXPECT_GT(std::abs(peak), 0.85 * 7.35);
+  double accel = 0.0, speed = 0.0;
+  for (Tick n = 2'000; n < 22'000; ++n) {
+    accel += std::pow(sut.motion.at(n).acceleration_m_s2, 2);
+    speed += std::pow(sut.motion.at(n).velocity_m_s, 2);
+  }
+  EXPECT_NEAR(std::sqrt(accel / speed) / (2.0 * std::numbers::pi), 3.5, 0.5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Design, EveryFamily,
                          testing::Values(Family::kNoise, Family::kMultisine, Family::kSweep,
                                          Family::kSteps));
 
+// Parts of 5 s, half a cosine of half a second between them, at 100 Hz.
 TEST(DesignTest, LoudAndQuietPartsTakeTurns) {
+  const Ride even = ride_of({Family::kNoise, 1.0, 3.0, 1.0, 1.0, 1}, bounds());
   const Ride sut = ride_of({Family::kSteps, 1.0, 3.0, 1.0, 0.2, 1}, bounds());
-  // Half a second of change at each end is left out; two noises of 4 s differ by a third.
-  const double loud = rms_between(sut.motion, 0.5, 4.5);
-  const double quiet = rms_between(sut.motion, 5.75, 9.5);
-  EXPECT_NEAR(quiet / loud, 0.2, 0.08);
-  EXPECT_GT(rms_between(sut.motion, 10.75, 14.5), 2.0 * quiet);
+  for (const auto& [at, share] : std::vector<std::pair<std::size_t, double>>{
+           {0, 1.0}, {499, 1.0}, {525, 0.6}, {550, 0.2}, {999, 0.2}, {1025, 0.6}, {1050, 1.0}}) {
+    EXPECT_NEAR(sut.accel_m_s2[at], share * even.accel_m_s2[at], 1e-12) << at;
+  }
 }
 
 TEST(DesignTest, WhatTheLimitsForbidIsRefused) {
@@ -76,12 +85,16 @@ TEST(DesignTest, WhatTheLimitsForbidIsRefused) {
 }
 
 TEST(DesignTest, ARunHasTheMotionAndTheChannelsOfTheRecording) {
-  const auto recorded = made::measured(1500, 8, 1);
+  auto recorded = made::measured(1500, 8, 1);
+  recorded.stretches = {{0, 600, 0.0}, {600, 1300, 6.0}, {1300, 1500, 13.0}};
   const Ride ride = ride_of({Family::kNoise, 1.0, 3.0, 1.0, 1.0, 1}, bounds());
   const diagnosis::Measurement sut = run_of(ride.motion, recorded, "u", "y");
   ASSERT_EQ(sut.size(), 2000U);
   EXPECT_DOUBLE_EQ(sut.find("u")->values[700], ride.motion.at(2'000 + 7'000).acceleration_m_s2);
-  EXPECT_EQ(sut.find("z")->values[1600], recorded.find("z")->values[100]);
+  // From the longest stretch, of 700 samples, over and over.
+  EXPECT_EQ(sut.find("z")->values[750], recorded.find("z")->values[650]);
+  EXPECT_EQ(sut.find("y")->values, std::vector<double>(2000, 0.0));
+  EXPECT_EQ(sut.weight, std::vector<double>(2000, 1.0));
 }
 
 // x and z are one in the recording, and the platform moves neither.
