@@ -64,11 +64,18 @@ const Effect kOfV{"coupled_input", "static", {"v"}, {}, {0.0}};
 const Effect kOfTemp{"coupled_input", "static", {"temp"}, {}, {0.0}};
 const Effect kDrift{"drift", "exponential", {}, {{"time_constant", "s", 20.0, 1.0, 100.0}}, {0.0}};
 
-TEST(CarriedTest, WhereNothingWasFoundItIsTheBaseline) {
+TEST(CarriedTest, WhereNothingWasFoundItIsTheBaselineOverTheInputsBand) {
   const Sut sut(Made([](const Made&, std::size_t) { return 0.0; }).measurement(), {});
   EXPECT_EQ(packed(sut.carried.model), packed(sut.studied.baseline.model));
   EXPECT_THAT(sut.carried.left_out, IsEmpty());
   EXPECT_THAT(sut.carried.inputs, SizeIs(1));
+  ASSERT_THAT(sut.carried.bands, SizeIs(1));
+  EXPECT_EQ(sut.carried.bands[0].of, "u");
+  // made::ride(): 0.5 to 8 Hz, with the skirts of its filter.
+  EXPECT_GT(sut.carried.bands[0].low_hz, 0.2);
+  EXPECT_LT(sut.carried.bands[0].low_hz, 1.0);
+  EXPECT_GT(sut.carried.bands[0].high_hz, 3.0);
+  EXPECT_LT(sut.carried.bands[0].high_hz, 16.0);
 }
 
 // An exponential's offset is where it ends; another recording begins where this one did.  The
@@ -115,17 +122,6 @@ TEST(CarriedTest, AModeThatDecaysIsCarried) {
                   {{"frequency", "Hz", 1.9, 0.15, 40.0}, {"damping_ratio", "-", 0.1, 0.003, 0.95}},
                   {0.0, 0.0}}});
   EXPECT_THAT(sut.carried.model.effects, SizeIs(1));
-}
-
-TEST(CarriedTest, TheBandOfTheInputIsKept) {
-  const Sut sut(Made([](const Made&, std::size_t) { return 0.0; }).measurement(), {});
-  ASSERT_THAT(sut.carried.bands, SizeIs(1));
-  EXPECT_EQ(sut.carried.bands[0].of, "u");
-  // made::ride(): 0.5 to 8 Hz, with the skirts of its filter.
-  EXPECT_GT(sut.carried.bands[0].low_hz, 0.2);
-  EXPECT_LT(sut.carried.bands[0].low_hz, 1.0);
-  EXPECT_GT(sut.carried.bands[0].high_hz, 3.0);
-  EXPECT_LT(sut.carried.bands[0].high_hz, 16.0);
 }
 
 TEST(CarriedTest, AnEffectThatTheInputsDetermineIsCarriedWithItsRange) {

@@ -73,8 +73,7 @@ TEST(DrawnNamesTest, WhatIsNotWorthAddingIsNothing) {
   const auto sut = drawn_names(search, {});
   ASSERT_TRUE(sut);
   EXPECT_THAT(sut->counts, ElementsAre(Pair(kNoName, 100)));
+  EXPECT_FALSE(drawn_names({}, {})) << "without a round there is none";
 }
-
-TEST(DrawnNamesTest, WithoutARoundThereIsNone) { EXPECT_FALSE(drawn_names({}, {})); }
 
 }  // namespace stillhand::diagnosis::drawn_names_test

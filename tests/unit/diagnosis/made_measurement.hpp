@@ -41,6 +41,15 @@ inline std::vector<double> sum_of(std::vector<double> left, const std::vector<do
   return left;
 }
 
+/// Sum of signals, each with its factor.
+inline std::vector<double> mix(const std::vector<std::pair<double, std::vector<double>>>& parts) {
+  std::vector<double> y(parts.front().second.size(), 0.0);
+  for (const auto& [factor, x] : parts) {
+    for (std::size_t n = 0; n < y.size(); ++n) y[n] += factor * x[n];
+  }
+  return y;
+}
+
 inline Eigen::VectorXd column_of(const std::vector<double>& x) {
   return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
 }
@@ -167,10 +176,7 @@ inline Body two_pole_body() {
 inline Measurement with_another_channel(std::size_t count) {
   const auto u = ride(count, 1);
   const auto v = ride(count, 2);
-  const auto noise = white(count, 3);
-  const Body body = two_pole_body();
-  auto y = answer(body.numerators[0], body.denominator, u);
-  for (std::size_t n = 0; n < count; ++n) y[n] += 0.3 * v[n] + 0.05 * noise[n];
+  const auto y = mix({{1.0, answer(two_pole_body(), u)}, {0.3, v}, {0.05, white(count, 3)}});
   return measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
 }
 

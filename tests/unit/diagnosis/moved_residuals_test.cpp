@@ -19,8 +19,7 @@ struct Moved {
 
   [[nodiscard]] static Measurement measurement() {
     const auto u = made::ride(kCount, 1);
-    auto y = made::white(kCount, 2);
-    for (std::size_t n = 0; n < kCount; ++n) y[n] = 2.0 * u[n] + kNoise * y[n];
+    const auto y = made::mix({{2.0, u}, {kNoise, made::white(kCount, 2)}});
     return made::measurement_of({{"u", "V", u}, {"y", "N", y}});
   }
   [[nodiscard]] static Eigen::MatrixXd columns() {

@@ -35,9 +35,9 @@ std::vector<double> overflowing(const std::vector<double>& u) {
 
 // The same tank without a rim, and a sensor that ends.
 std::vector<double> clipped(const std::vector<double>& u) {
-  std::vector<double> y = made::answer({0.0, 0.02}, {1.0, -0.98}, u);
-  const auto noise = made::white(kCount, 7);
-  for (std::size_t n = 0; n < kCount; ++n) y[n] = std::min(y[n] + 0.01 * noise[n], kLimit);
+  std::vector<double> y = made::mix(
+      {{1.0, made::answer({0.0, 0.02}, {1.0, -0.98}, u)}, {0.01, made::white(kCount, 7)}});
+  for (double& each : y) each = std::min(each, kLimit);
   return y;
 }
 
@@ -49,18 +49,14 @@ Diagnosis diagnosed(const std::vector<double>& u, const std::vector<double>& y) 
   return diagnose(made::measurement_of({{"u", "V", u}, {"y", "V", y}}), options);
 }
 
-// Two rests, in five of thirty blocks; and the same upside down, a tank that runs dry.
-TEST(RestAtALimitTest, ATankThatOverflowsOrRunsDryTwiceIsStopped) {
-  for (const double sign : {1.0, -1.0}) {
-    std::vector<double> u = inflow();
-    std::vector<double> y = overflowing(u);
-    for (std::vector<double>* each : {&u, &y}) {
-      for (double& value : *each) value *= sign;
-    }
-    const Diagnosis sut = diagnosed(u, y);
+// Two rests, in five of thirty blocks; or it runs dry.
+TEST(RestAtALimitTest, ATankThatOverflowsTwiceIsStopped) {
+  for (const auto& [sign, form] : {std::pair{1.0, "stop above"}, {-1.0, "stop below"}}) {
+    const Diagnosis sut =
+        diagnosed(made::mix({{sign, inflow()}}), made::mix({{sign, overflowing(inflow())}}));
     ASSERT_EQ(sut.effects.size(), 1u);
     EXPECT_EQ(sut.effects[0].effect.kind, "output_saturation");
-    EXPECT_EQ(sut.effects[0].effect.form, sign > 0.0 ? "stop above" : "stop below");
+    EXPECT_EQ(sut.effects[0].effect.form, form);
     EXPECT_EQ(sut.effects[0].effect.value(0), sign * kLimit);
     EXPECT_EQ(sut.effects[0].carried, 1.0);
   }

@@ -56,14 +56,11 @@ TEST(SearchTest, AnImprovementInEveryBlockIsAsUnlikelyAsItsSigns) {
   EXPECT_GT(worse.rmse_ratio, 1.0);
 }
 
-TEST(SearchTest, BlocksThatWeighNothingDoNotCount) {
+TEST(SearchTest, BlocksThatWeighNothingDoNotCountAndTooFewSayNothing) {
   HeldOut before = of_squares({4.0, 8.0, 12.0, 16.0, 1e6});
   HeldOut after = of_squares({2.0, 6.0, 10.0, 18.0, 1.0});
   before.weights[4] = after.weights[4] = 0.0;
   EXPECT_DOUBLE_EQ(compared(before, after).rmse_ratio, std::sqrt(18.0 / 20.0));
-}
-
-TEST(SearchTest, TooFewBlocksSayNothing) {
   const Comparison sut = compared(of_squares({4.0, 8.0}), of_squares({1.0, 1.0}));
   EXPECT_EQ(sut.p, 1.0);
   EXPECT_EQ(sut.t, 0.0);
@@ -76,48 +73,45 @@ TEST(SearchTest, TasksAreDoneInOrder) {
   EXPECT_THAT(done, ElementsAre(0u, 1u, 2u));
 }
 
-// Static and short, so that a whole search takes little: y = 2 u + 0.5 v + 0.25 w + noise.
-struct Searched {
-  explicit Searched(double of_v, double of_w, SearchOptions options = {}) {
-    constexpr std::size_t kCount = 3000;
-    const auto u = made::ride(kCount, 1);
-    const auto v = made::ride(kCount, 2);
-    const auto w = made::ride(kCount, 3);
-    std::vector<double> y = made::white(kCount, 4);
-    for (std::size_t n = 0; n < kCount; ++n) {
-      y[n] = 0.1 * y[n] + 2.0 * u[n] + of_v * v[n] + of_w * w[n];
-    }
-    const Signals signals(
-        made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"w", "V", w}, {"y", "N", y}}), {"u"},
-        "y");
-    const Blocks blocks = make_blocks(signals);
-    const Baseline baseline = fit_baseline(signals, blocks, 0);
-    result = search(baseline, signals, blocks, options, in_order, [this](const std::string& step) {
-      steps.push_back(step);
-      return true;
-    });
-  }
-  SearchResult result;
-  std::vector<std::string> steps;
-};
+// Static, so that a whole search takes little.
+SearchResult searched(const Measurement& measurement, const SearchOptions& options = {},
+                      std::vector<std::string>* steps = nullptr) {
+  const Signals signals(measurement, {"u"}, "y");
+  const Blocks blocks = make_blocks(signals);
+  return search(fit_baseline(signals, blocks, 0), signals, blocks, options, in_order,
+                [steps](const std::string& step) {
+                  if (steps != nullptr) steps->push_back(step);
+                  return true;
+                });
+}
+
+// y = 2 u + of_v v + of_w w + noise of 0.1.
+Measurement with_paths(double of_v, double of_w) {
+  const auto u = made::ride(3000, 1);
+  const auto v = made::ride(3000, 2);
+  const auto w = made::ride(3000, 3);
+  const auto y = made::mix({{2.0, u}, {of_v, v}, {of_w, w}, {0.1, made::white(3000, 4)}});
+  return made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"w", "V", w}, {"y", "N", y}});
+}
 
 TEST(SearchTest, EffectsAreAddedStrongestFirst) {
-  const Searched sut(0.25, 0.5);
-  ASSERT_EQ(sut.result.model.effects.size(), 2u);
-  EXPECT_EQ(sut.result.model.effects[0].kind, "coupled_input");
-  EXPECT_THAT(sut.result.model.effects[0].channels, ElementsAre("w"));
-  EXPECT_THAT(sut.result.model.effects[1].channels, ElementsAre("v"));
+  std::vector<std::string> steps;
+  const SearchResult sut = searched(with_paths(0.25, 0.5), {}, &steps);
+  ASSERT_EQ(sut.model.effects.size(), 2u);
+  EXPECT_EQ(sut.model.effects[0].kind, "coupled_input");
+  EXPECT_THAT(sut.model.effects[0].channels, ElementsAre("w"));
+  EXPECT_THAT(sut.model.effects[1].channels, ElementsAre("v"));
   // The simplest form of several that can do the same.
-  EXPECT_EQ(sut.result.model.effects[0].form, "static");
+  EXPECT_EQ(sut.model.effects[0].form, "static");
   // 0.1/sqrt(2900) = 0.002 each.
-  EXPECT_NEAR(sut.result.model.effects[0].coefficients[0], 0.5, 0.01);
-  EXPECT_NEAR(sut.result.model.effects[1].coefficients[0], 0.25, 0.01);
-  ASSERT_EQ(sut.result.additions.size(), 2u);
-  EXPECT_NEAR(sut.result.additions[0].before.rmse(), std::hypot(0.5, 0.25, 0.1), 0.03);
-  EXPECT_NEAR(sut.result.additions[1].after.rmse(), 0.1, 0.01);
-  EXPECT_EQ(sut.result.removed, 0u);
-  EXPECT_FALSE(sut.result.last_tried.empty()) << "the rejected candidates are kept";
-  EXPECT_THAT(sut.steps, ElementsAre("effect 1", "effect 2", "effect 3"));
+  EXPECT_NEAR(sut.model.effects[0].coefficients[0], 0.5, 0.01);
+  EXPECT_NEAR(sut.model.effects[1].coefficients[0], 0.25, 0.01);
+  ASSERT_EQ(sut.additions.size(), 2u);
+  EXPECT_NEAR(sut.additions[0].before.rmse(), std::hypot(0.5, 0.25, 0.1), 0.03);
+  EXPECT_NEAR(sut.additions[1].after.rmse(), 0.1, 0.01);
+  EXPECT_EQ(sut.removed, 0u);
+  EXPECT_FALSE(sut.last_tried.empty()) << "the rejected candidates are kept";
+  EXPECT_THAT(steps, ElementsAre("effect 1", "effect 2", "effect 3"));
 }
 
 // A ramp with a small bend, 0.02 RMS in noise of 0.1: three cosines leave 2 % less than a
@@ -130,11 +124,8 @@ TEST(SearchTest, OfTwoThatExplainAsMuchTheSimplerIsAdded) {
     const double t = static_cast<double>(n) / kCount;
     y[n] = 0.1 * y[n] + 2.0 * u[n] + 0.5 * t + 0.03 * std::cos(2.0 * std::numbers::pi * t);
   }
-  const Signals signals = made::signals_of(u, y);
-  const Blocks blocks = make_blocks(signals);
-  const SearchOptions options{.most_effects = 1};
-  const SearchResult sut = search(fit_baseline(signals, blocks, 0), signals, blocks, options,
-                                  in_order, [](const std::string&) { return true; });
+  const SearchResult sut =
+      searched(made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {.most_effects = 1});
   ASSERT_EQ(sut.additions.size(), 1u);
   const Addition& first = sut.additions.front();
   EXPECT_EQ(first.tried.front().model.effects[0].form, "slow cosines") << "nothing is tested";
@@ -143,17 +134,13 @@ TEST(SearchTest, OfTwoThatExplainAsMuchTheSimplerIsAdded) {
   EXPECT_EQ(sut.model.effects[0].form, "linear");
 }
 
-TEST(SearchTest, WhereNothingIsMissingNothingIsAdded) {
-  const Searched sut(0.0, 0.0);
-  EXPECT_TRUE(sut.result.model.effects.empty());
-  EXPECT_TRUE(sut.result.additions.empty());
-}
-
-TEST(SearchTest, NoMoreIsAddedThanAskedFor) {
-  const SearchOptions options{.most_effects = 1};
-  const Searched sut(0.25, 0.5, options);
-  ASSERT_EQ(sut.result.model.effects.size(), 1u);
-  EXPECT_THAT(sut.result.model.effects[0].channels, ElementsAre("w"));
+TEST(SearchTest, NoMoreIsAddedThanIsMissingOrAskedFor) {
+  const SearchResult none = searched(with_paths(0.0, 0.0));
+  EXPECT_TRUE(none.model.effects.empty());
+  EXPECT_TRUE(none.additions.empty());
+  const SearchResult one = searched(with_paths(0.25, 0.5), {.most_effects = 1});
+  ASSERT_EQ(one.model.effects.size(), 1u);
+  EXPECT_THAT(one.model.effects[0].channels, ElementsAre("w"));
 }
 
 // Pieces of 20 s: y = 2 u + c v + noise, each with its own c and recording.
@@ -171,11 +158,7 @@ SearchResult search_joined(const std::vector<double>& of_v,
     const double start_s = static_cast<double>(r * kEach) / joined.rate_hz;
     joined.stretches.push_back({r * kEach, (r + 1) * kEach, start_s, recording[r]});
   }
-  const Signals signals(joined, {"u"}, "y");
-  const Blocks blocks = make_blocks(signals);
-  const SearchOptions options{.most_effects = 1};
-  return search(fit_baseline(signals, blocks, 0), signals, blocks, options, in_order,
-                [](const std::string&) { return true; });
+  return searched(joined, {.most_effects = 1});
 }
 
 bool has_kind(const SearchResult& result, const std::string& kind) {
@@ -210,16 +193,12 @@ TEST(SearchTest, BurstsThatStandOutLaterLeaveTheOrderWhereTheyChangeNoName) {
   constexpr std::size_t kCount = 6000;
   const auto u = made::ride(kCount, 1);
   const auto v = made::ride(kCount, 2);
-  std::vector<double> y = made::white(kCount, 4);
-  for (std::size_t n = 0; n < kCount; ++n) y[n] = 0.1 * y[n] + 2.0 * u[n] + 1.5 * v[n];
+  auto y = made::mix({{2.0, u}, {1.5, v}, {0.1, made::white(kCount, 4)}});
   for (std::size_t n = 450; n < kCount; n += 900) {
     for (std::size_t i = 0; i < 5; ++i) y[n + i] += 8.0;
   }
-  const Signals signals(made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}}), {"u"},
-                        "y");
-  const Blocks blocks = make_blocks(signals);
-  const SearchResult sut = search(fit_baseline(signals, blocks, 0), signals, blocks, {}, in_order,
-                                  [](const std::string&) { return true; });
+  const SearchResult sut =
+      searched(made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}}));
   ASSERT_EQ(sut.model.effects.size(), 2u);
   EXPECT_EQ(sut.model.effects[0].kind, "coupled_input");
   EXPECT_EQ(sut.model.effects[1].kind, "transients");
@@ -233,6 +212,7 @@ TEST(RecordingsOutTest, AnEffectIsRefutedThatHelpsOneAtMostAndHarmsAnother) {
   EXPECT_FALSE(refuted({0.3, 0.2, -0.5}, kLeast)) << "two bear it out";
   EXPECT_TRUE(refuted({0.3, -0.02}, kLeast));
   EXPECT_TRUE(refuted({0.3, std::numeric_limits<double>::quiet_NaN()}, kLeast));
+  EXPECT_THAT(falls({2.0, 4.0}, {1.0, 5.0}), ElementsAre(0.5, -0.25));
 }
 
 // A(1) = 0.034: the spring pushes outwards below 1 N and holds beyond.

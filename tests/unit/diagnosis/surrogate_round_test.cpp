@@ -31,11 +31,10 @@ struct Round {
   [[nodiscard]] static Measurement measurement(double of_v, double of_tone, std::uint64_t seed) {
     const auto u = made::ride(kCount, 1);
     const auto v = made::ride(kCount, 2);
-    std::vector<double> y = made::white(kCount, seed);
+    auto y = made::mix({{2.0, u}, {of_v, v}, {0.1, made::white(kCount, seed)}});
     for (std::size_t n = 0; n < kCount; ++n) {
       const double t = static_cast<double>(n) / made::kRateHz;
-      y[n] = 0.1 * y[n] + 2.0 * u[n] + of_v * v[n] +
-             of_tone * std::sin(2.0 * std::numbers::pi * 5.0 * t);
+      y[n] += of_tone * std::sin(2.0 * std::numbers::pi * 5.0 * t);
     }
     return made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
   }

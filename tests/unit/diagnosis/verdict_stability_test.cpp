@@ -21,11 +21,8 @@ constexpr std::size_t kRows = 3000;
 Measurement with_friction(double friction) {
   const auto u = made::ride(kRows, 1);
   const auto omega = made::ride(kRows, 2);
-  const auto noise = made::white(kRows, 3);
-  std::vector<double> y(kRows);
-  for (std::size_t n = 0; n < kRows; ++n) {
-    y[n] = 2.0 * u[n] + 0.2 * noise[n] + std::copysign(friction, omega[n]);
-  }
+  auto y = made::mix({{2.0, u}, {0.2, made::white(kRows, 3)}});
+  for (std::size_t n = 0; n < kRows; ++n) y[n] += std::copysign(friction, omega[n]);
   return made::measurement_of({{"u", "m/s^2", u}, {"omega", "rad/s", omega}, {"y", "N", y}});
 }
 
@@ -36,14 +33,12 @@ DiagnoseOptions options_of() {
   return options;
 }
 
-TEST(VerdictStabilityTest, AClearEffectComesBackAlways) {
-  const NameCounts sut = verdict_stability(with_friction(1.0), options_of(), 4);
-  EXPECT_THAT(sut.counts, ElementsAre(Pair("coulomb_friction", 4)));
-}
-
-TEST(VerdictStabilityTest, NothingIsCountedByItsVerdict) {
-  const NameCounts sut = verdict_stability(with_friction(0.0), options_of(), 4);
-  EXPECT_THAT(sut.counts, ElementsAre(Pair("nothing missing", 4)));
+TEST(VerdictStabilityTest, AClearEffectAndNothingComeBackAlways) {
+  for (const auto& [friction, name] :
+       {std::pair{1.0, "coulomb_friction"}, {0.0, "nothing missing"}}) {
+    const NameCounts sut = verdict_stability(with_friction(friction), options_of(), 4);
+    EXPECT_THAT(sut.counts, ElementsAre(Pair(name, 4)));
+  }
 }
 
 TEST(VerdictStabilityTest, AFifthOfTheRecordWeighsNothingEachTimeAnother) {
