@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/diagnosis/detection/detection_lines.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,13 +42,13 @@ DetectionLines lines_of(
   return detection_lines(*repeated, excitation->excited, signals);
 }
 
-std::vector<double> scaled(std::vector<double> x, double by) {
-  for (double& value : x) value *= by;
-  return x;
+// Of so many periods, with that deviation.
+std::vector<double> white(std::size_t periods, std::uint64_t seed, double deviation) {
+  return made::mix({{deviation, made::white(count_of(periods), seed)}});
 }
 
 TEST(DetectionLinesTest, LinesAreSortedByWhatIsExcited) {
-  const DetectionLines sut = lines_of(kOdd, 4, scaled(made::white(count_of(4), 2), 0.1));
+  const DetectionLines sut = lines_of(kOdd, 4, white(4, 2, 0.1));
   EXPECT_NEAR(sut.fundamental_hz, 0.1, 1e-12);
   EXPECT_TRUE(sut.odd_excitation);
   EXPECT_EQ(sut.excited.frequency_hz.size(), kOdd.size());
@@ -57,20 +58,16 @@ TEST(DetectionLinesTest, LinesAreSortedByWhatIsExcited) {
   EXPECT_TRUE(sut.odd_or_even.empty());
   EXPECT_NEAR(sut.odd.frequency_hz.front(), 0.3, 1e-12);
   EXPECT_NEAR(sut.even.frequency_hz.front(), 0.2, 1e-12);
-  // Each of 8 lines of an input of RMS 1 has 1/sqrt 8; noise a line 0.1 sqrt(2/4000).
+  // Each of 8 lines of an input of RMS 1 has 1/sqrt 8.
   EXPECT_NEAR(sut.excited.output.front(), 1.0 / std::sqrt(8.0), 0.02);
-  EXPECT_NEAR(sut.even.noise.front(), 0.1 * std::sqrt(2.0 / 4000.0), 0.004);
-}
-
-// Every third harmonic is excited, 3 x odd: the fundamental is three times 1/period.
-TEST(DetectionLinesTest, OddAndEvenCountFromTheCommonDivisorOfWhatIsExcited) {
-  const DetectionLines sut = lines_of({6, 18, 42}, 3, scaled(made::white(count_of(3), 3), 0.1));
-  EXPECT_NEAR(sut.fundamental_hz, 0.6, 1e-12);
-  EXPECT_TRUE(sut.odd_excitation);
+  // Six times 1, 3 and 7: these are odd.
+  const DetectionLines sixth = lines_of({6, 18, 42}, 3, white(3, 3, 0.1));
+  EXPECT_NEAR(sixth.fundamental_hz, 0.6, 1e-12);
+  EXPECT_TRUE(sixth.odd_excitation);
 }
 
 TEST(DetectionLinesTest, ASquareIsEvenAndACubeIsOdd) {
-  const auto noise = scaled(made::white(count_of(4), 4), 0.05);
+  const auto noise = white(4, 4, 0.05);
   const DetectionLines square = lines_of(kOdd, 4, noise, [](double u) { return 0.05 * u * u; });
   EXPECT_LT(square.even.p, 1e-10);
   EXPECT_GT(square.even.share, 0.2);
@@ -82,10 +79,37 @@ TEST(DetectionLinesTest, ASquareIsEvenAndACubeIsOdd) {
   EXPECT_GT(cube.even.p, 1e-3);
 }
 
+// Line j between harmonics, which are 12 apart, has the power (j mod 12)^2: 8 of them on each side
+// of a harmonic 43.5 in the mean, 1 + .. + 8^2 and 4^2 + .. + 11^2 over 16.  Even ones have ten
+// times as much, and all 50 groups 506 each.  Fisher's sum h has six degrees of freedom.
+TEST(DetectionLinesTest, AGroupIsComparedWithTheLinesAroundItsOwn) {
+  constexpr double kSamples = 1200.0;
+  RepeatedResidual repeated{{100, 100, 12, 0.0}, {}, {}};
+  for (std::size_t j = 0; j <= 600; ++j) repeated.lines.emplace_back(j % 12);
+  for (const std::size_t j : {24, 48, 72}) repeated.lines[j] = std::sqrt(435.0);
+  const auto beside = [&](double output) {
+    const std::vector<double> y = made::scaled_to(made::multisine(1300, 100, {2}, 1), output);
+    return detection_lines(repeated, {1, 3}, made::signals_of(made::white(1300, 1), y));
+  };
+  const LineGroup sut = beside(1.0).even;
+  EXPECT_THAT(sut.frequency_hz, testing::ElementsAre(2.0, 4.0, 6.0));
+  EXPECT_THAT(beside(1.0).odd.frequency_hz, testing::ElementsAre(5.0, 7.0, 9.0));
+  EXPECT_NEAR(sut.output.front(), 1.0, 1e-9);
+  EXPECT_NEAR(sut.residual.front(), std::sqrt(2.0 * 435.0) / kSamples, 1e-12);
+  EXPECT_NEAR(sut.noise.front(), std::sqrt(2.0 * 43.5) / kSamples, 1e-12);
+  EXPECT_NEAR(sut.share, 3.0 * 391.5 / (50.0 * 506.0 + 3.0 * 435.0), 1e-12);
+  const double h = 3.0 * 16.0 * std::log1p(10.0 / 16.0);
+  EXPECT_NEAR(sut.p, std::exp(-h) * (1.0 + h + h * h / 2.0), 1e-6 * sut.p);
+  // A thousandth of the output, whose one line has N^2/2 times its square, is not tested.
+  const double level = 1e3 * std::sqrt(3.0 * 391.5 * 2.0) / kSamples;
+  EXPECT_EQ(beside(0.99 * level).even.p, sut.p);
+  EXPECT_EQ(beside(1.01 * level).even.p, 1.0);
+}
+
 // A sine of RMS 1 squared is 1 - cos(2 .): one line of RMS 1/sqrt 2.
 TEST(DetectionLinesTest, TheLevelOfALineIsItsRms) {
-  const DetectionLines sut = lines_of({7}, 4, scaled(made::white(count_of(4), 5), 1e-3),
-                                      [](double u) { return 0.05 * u * u; });
+  const DetectionLines sut =
+      lines_of({7}, 4, white(4, 5, 1e-3), [](double u) { return 0.05 * u * u; });
   ASSERT_FALSE(sut.even.empty());
   EXPECT_NEAR(sut.even.frequency_hz.front(), 1.4, 1e-12);
   EXPECT_NEAR(sut.even.residual.front(), 0.05 / std::sqrt(2.0), 2e-4);
@@ -93,8 +117,8 @@ TEST(DetectionLinesTest, TheLevelOfALineIsItsRms) {
 }
 
 TEST(DetectionLinesTest, WhereEvenLinesAreExcitedTheOrdersAreNotToldApart) {
-  const DetectionLines sut = lines_of(kAll, 4, scaled(made::white(count_of(4), 6), 0.05),
-                                      [](double u) { return 0.05 * u * u; });
+  const DetectionLines sut =
+      lines_of(kAll, 4, white(4, 6, 0.05), [](double u) { return 0.05 * u * u; });
   EXPECT_FALSE(sut.odd_excitation);
   EXPECT_TRUE(sut.odd.empty());
   EXPECT_TRUE(sut.even.empty());
@@ -127,28 +151,22 @@ TEST(DetectionLinesTest, NoiseAloneGivesAlarmsAsOftenAsPSays) {
   EXPECT_NEAR(alarms(4, {1.0}, true), 40, 22);
 }
 
-// A ramp over the record is the same within every period, and yet no line.
-TEST(DetectionLinesTest, ADriftIsNoDistortion) {
-  std::vector<double> noise = scaled(made::white(count_of(4), 7), 0.05);
-  for (std::size_t n = 0; n < noise.size(); ++n) noise[n] += 1e-3 * static_cast<double>(n);
-  const DetectionLines sut = lines_of(kOdd, 4, noise);
-  EXPECT_GT(sut.odd.p, 0.01);
-  EXPECT_GT(sut.even.p, 0.01);
-}
-
-// A tone between two harmonics leaks to both sides.
-TEST(DetectionLinesTest, ATonePastTheLinesIsNoDistortion) {
-  std::vector<double> noise = scaled(made::white(count_of(4), 8), 0.05);
-  for (std::size_t n = 0; n < noise.size(); ++n)
-    noise[n] += std::sin(0.0643 * static_cast<double>(n));
-  const DetectionLines sut = lines_of(kOdd, 4, noise);
-  EXPECT_GT(sut.odd.p, 0.01);
-  EXPECT_GT(sut.even.p, 0.01);
+// A ramp over the record is the same within every period, and yet no line; a tone between two
+// harmonics leaks to both sides.
+TEST(DetectionLinesTest, ADriftOrAToneBetweenTheLinesIsNoDistortion) {
+  for (const auto& more :
+       {+[](double n) { return 1e-3 * n; }, +[](double n) { return std::sin(0.0643 * n); }}) {
+    std::vector<double> noise = white(4, 7, 0.05);
+    for (std::size_t n = 0; n < noise.size(); ++n) noise[n] += more(static_cast<double>(n));
+    const DetectionLines sut = lines_of(kOdd, 4, noise);
+    EXPECT_GT(sut.odd.p, 0.01);
+    EXPECT_GT(sut.even.p, 0.01);
+  }
 }
 
 // A converter's steps repeat with the excitation; 1e-4 of the output are nothing.
 TEST(DetectionLinesTest, StepsOfAConverterAreNoEffect) {
-  const DetectionLines sut = lines_of(kOdd, 4, scaled(made::white(count_of(4), 9), 1e-7),
+  const DetectionLines sut = lines_of(kOdd, 4, white(4, 9, 1e-7),
                                       [](double u) { return std::round(u * 5000.0) / 5000.0 - u; });
   EXPECT_EQ(sut.odd.p, 1.0);
   EXPECT_EQ(sut.even.p, 1.0);
