@@ -12,58 +12,46 @@
 
 namespace stillhand::diagnosis::share_test {
 
-using made::column_of;
-
 constexpr std::size_t kCount = 6000;
 
-Blocks thirds() {
-  Blocks blocks{200, kCount / 200, 3, {}};
-  for (std::size_t b = 0; b < blocks.count; ++b) blocks.fold.push_back(b * 3 / blocks.count);
-  return blocks;
-}
-
-// Variance of least squares of 0.6 d on d under white noise of 1: 1/sqrt(6000) of the standard
-// deviation of d, which is 1: 0.013.  Three of them.
-TEST(ShareTest, IsWhatTheResidualHoldsOfTheDifference) {
-  const Eigen::VectorXd d = column_of(made::white(kCount, 1));
-  const Share sut = share_of(0.6 * d + column_of(made::white(kCount, 2)), d, thirds());
-  EXPECT_NEAR(sut.estimate, 0.6, 0.04);
-  // Over three parts the standard error itself is uncertain by a factor of two.
-  EXPECT_GT(sut.std_error, 0.005);
-  EXPECT_LT(sut.std_error, 0.04);
+// Two parts of two blocks, d = 1: the residual of a block is its own share.  The blocks miss 3 by
+// -2, -1, 0 and 3, which is 4/3 14/4^2 for the variance of the mean; parts of shares 1.5 and 4.5 by
+// -3 and 3 of their sums, 2/1 18/4^2.  With 1 of the first part two of its products' roots are
+// larger than |r|^2 = 5: s^2 - 3 s = 0.1025 5/2.
+TEST(ShareTest, TheStandardErrorIsThatOverTheBlocksOrThePartsTheLargerOne) {
+  const Eigen::VectorXd d = Eigen::VectorXd::Ones(4);
+  const auto sut = [&](const Eigen::Vector4d& residual) {
+    return share_of(residual, d, {1, 4, 2, {0, 0, 1, 1}});
+  };
+  const Share apart = sut({1.0, 2.0, 3.0, 6.0});
+  EXPECT_DOUBLE_EQ(apart.estimate, 3.0);
+  EXPECT_DOUBLE_EQ(apart.std_error, 1.5);
+  EXPECT_DOUBLE_EQ(apart.harmless, 1.5 + std::sqrt(1.5 * 1.5 + 0.1025 * 5.0 / 2.0));
+  EXPECT_DOUBLE_EQ(apart.earned(), 0.75) << "1 - (1.5/3)^2, of at most 1";
+  EXPECT_DOUBLE_EQ(sut({1.0, 6.0, 3.0, 2.0}).std_error, std::sqrt(4.0 / 3.0 * 14.0 / 16.0));
+  const Share alone = share_of(d, Eigen::Vector4d(1.0, 0.0, 0.0, 0.0), {1, 4, 2, {0, 0, 1, 1}});
+  EXPECT_EQ(alone.std_error, alone.estimate) << "one block says nothing of its own error";
+  EXPECT_EQ(share_of(d, 0.0 * d, {1, 4, 2, {0, 0, 1, 1}}).earned(), 0.0) << "no difference";
 }
 
 TEST(ShareTest, WhatOnePartContradictsIsUncertain) {
-  const Eigen::VectorXd d = column_of(made::white(kCount, 1));
-  Eigen::VectorXd residual = d;
-  residual.head(kCount / 3) *= -1.0;
-  const Share sut = share_of(residual, d, thirds());
   // -1, 1 and 1: a mean of 1/3 with a standard error of 2/3.
-  EXPECT_NEAR(sut.estimate, 1.0 / 3.0, 0.05);
-  EXPECT_NEAR(sut.std_error, 2.0 / 3.0, 0.05);
+  const Share sut =
+      share_of(Eigen::Vector3d(-1.0, 1.0, 1.0), Eigen::Vector3d::Ones(), {1, 3, 3, {0, 1, 2}});
+  EXPECT_DOUBLE_EQ(sut.estimate, 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(sut.std_error, 2.0 / 3.0);
   EXPECT_EQ(sut.earned(), 0.0);
 }
 
 // Two parts of three are ten times as large and want all of it; the third wants none, and its error
-// is 1 where the effect adds 1: |1 - s|^2 + .. = 1 + s^2 <= 1.05^2 for s = sqrt(0.1025) = 0.32.
+// is 1 where the effect adds 1: 1 + s^2 <= 1.05^2.
 TEST(ShareTest, NoPartIsMadeWorseByMoreThanATwentieth) {
-  const Eigen::VectorXd d = column_of(made::white(kCount, 1));
-  const Eigen::VectorXd noise = column_of(made::white(kCount, 2));
-  constexpr Eigen::Index kThird = kCount / 3;
-  Eigen::VectorXd difference = 10.0 * d;
-  Eigen::VectorXd residual = difference + noise;
-  difference.tail(kThird) = d.tail(kThird);
-  residual.tail(kThird) = noise.tail(kThird);
-  const Share sut = share_of(residual, difference, thirds());
-  EXPECT_GT(sut.estimate, 0.95);
-  // Products of 2000 samples of noise: 0.022 of each, so that of the root 0.03.
-  EXPECT_NEAR(sut.harmless, std::sqrt(0.1025), 0.07);
+  const Eigen::Vector<double, 6> difference{10.0, 10.0, 10.0, 10.0, 1.0, 1.0};
+  const Eigen::Vector<double, 6> residual{10.0, 10.0, 10.0, 10.0, 1.0, -1.0};
+  const Share sut = share_of(residual, difference, {2, 3, 3, {0, 1, 2}});
+  EXPECT_DOUBLE_EQ(sut.estimate, 400.0 / 402.0);
+  EXPECT_NEAR(sut.harmless, std::sqrt(0.1025), 1e-12);
   EXPECT_EQ(sut.earned(), sut.harmless);
-}
-
-TEST(ShareTest, OfNoDifferenceNothingIsEarned) {
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(kCount);
-  EXPECT_EQ(share_of(column_of(made::white(kCount, 2)), none, thirds()).earned(), 0.0);
 }
 
 TEST(ShareTest, TheStandardErrorTakesItsSquareOfTheEstimate) {
@@ -74,6 +62,9 @@ TEST(ShareTest, TheStandardErrorTakesItsSquareOfTheEstimate) {
       << "never more than the effect";
   EXPECT_EQ((Share{.estimate = 0.95, .std_error = 0.05}).earned(), 1.0)
       << "near enough to the whole";
+  EXPECT_EQ(rounded_share(0.099), 0.0);
+  EXPECT_EQ(rounded_share(0.101), 0.101);
+  EXPECT_EQ(rounded_share(0.899), 0.899);
 }
 
 // Every stage scales with the share: at a share of 0 the model is linear, and a term or a delay of
@@ -126,6 +117,10 @@ TEST(ShareTest, WhatAMeanOverAPeriodKeepsIsSlow) {
   EXPECT_LT(slow_share(quick, whole, 100), 0.01);
   EXPECT_GT(slow_share(slow, whole, 100), 0.99);
   EXPECT_NEAR(slow_share(quick + slow, whole, 100), 0.5, 0.01);
+  // Means over each sample and the one before: 1 1 0 -1; of two stretches 1 1 -1 -1.
+  const Eigen::Vector4d step(6.0, 6.0, 4.0, 4.0);
+  EXPECT_DOUBLE_EQ(slow_share(step, {{0, 4, 0.0}}, 2), 0.75);
+  EXPECT_DOUBLE_EQ(slow_share(step, {{0, 2, 0.0}, {2, 4, 0.02}}, 2), 1.0);
 }
 
 }  // namespace stillhand::diagnosis::share_test
