@@ -19,10 +19,8 @@ const std::vector<std::size_t> kHarmonics{5, 11, 15, 23, 31, 37, 45, 55};
 
 // Body on u and noise of 0.05.
 Measurement made_with(const std::vector<double>& u, const std::vector<double>& noise) {
-  const Body body = made::two_pole_body();
-  auto y = made::answer(body, u);
-  const auto settled = made::scaled_to(noise, 0.05);
-  for (std::size_t n = 0; n < kCount; ++n) y[n] += settled[n];
+  const auto answer = made::answer(made::two_pole_body(), u);
+  const auto y = made::sum_of(answer, made::scaled_to(noise, 0.05));
   return made::measurement_of({{"u", "V", u}, {"y", "N", y}});
 }
 
@@ -158,18 +156,21 @@ TEST(NoiseFloorTest, TheIntervalReachesDownToTheLowestEstimate) {
       << "noise cannot be more than is left";
 }
 
-// A density of 0.04 N^2/Hz above the band, and a thousand times as much within it: the level above
-// is taken for the band as well.  sqrt(0.04 50) = 1.41, less the two lowest lines and half a line.
+// Densities [N^2/Hz] of 0.001 f from f_1, 1.25 times the band's end, to 0.3
+// of the rate, 30 Hz, and 0.01 above; their mean, (f_1 + 30)/2000, is taken for what is below f_1.
 TEST(NoiseFloorTest, HighFrequenciesAreTakenForTheBandAsWell) {
-  const Signals& signals = known().studied.signals;
+  const double from_hz = 1.25 * known().studied.signals.highest_excited_hz();
+  const double mean = (from_hz + 30.0) / 2000.0;
   DetectionResult after;
-  for (double at_hz = 1.0; at_hz <= 50.0; at_hz += 0.5) {
+  for (int k = 20; k <= 1000; ++k) {
+    const double at_hz = 0.05 * k;
     after.coherence.frequency_hz.push_back(at_hz);
-    const bool above = at_hz > 1.2 * signals.highest_excited_hz();
-    after.coherence.residual_density.push_back(above ? 0.04 : 40.0);
+    after.coherence.residual_density.push_back(
+        at_hz <= from_hz ? 1000.0 * mean : (at_hz < 30.0 ? 0.001 * at_hz : 0.01));
   }
   const NoiseFloor sut = known().floor(after, {});
-  EXPECT_NEAR(estimate(sut, "high frequencies"), std::sqrt(0.04 * 50.0), 0.02);
+  EXPECT_NEAR(estimate(sut, "high frequencies"),
+              std::sqrt(mean * from_hz + mean * (30.0 - from_hz) + 0.01 * 20.0), 3e-3);
   EXPECT_THAT(sut.method, HasSubstr("1000 times"));
 }
 

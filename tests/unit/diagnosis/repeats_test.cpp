@@ -29,14 +29,18 @@ Repeats repeats_in(const std::vector<double>& residual, std::size_t periods) {
   return result ? result->repeats : Repeats{};
 }
 
+// Noise of a colour, without its first 500 samples.
+std::vector<double> settled(std::size_t periods, const std::vector<double>& colour,
+                            std::uint64_t seed) {
+  const auto noise = made::answer({1.0}, colour, made::white(periods * kPeriod + 500, seed));
+  return {noise.begin() + 500, noise.end()};
+}
+
 // In how many of 400 recordings the interval holds the true value.
 int covered(std::size_t periods, const std::vector<double>& colour, double deviation) {
   int inside = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
-    const auto noise =
-        made::answer({1.0}, colour, made::white(periods * kPeriod + 500, 1000 + seed));
-    const std::vector<double> settled(noise.begin() + 500, noise.end());
-    const Repeats sut = repeats_in(repeating(settled), periods);
+    const Repeats sut = repeats_in(repeating(settled(periods, colour, 1000 + seed)), periods);
     inside += sut.low < deviation && deviation < sut.high ? 1 : 0;
   }
   return inside;
@@ -83,8 +87,7 @@ TEST(RepeatsTest, NoiseAloneRarelyLeavesAPeriodOut) {
   const auto left_out = [](const std::vector<double>& colour) {
     int count = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
-      const auto noise = made::answer({1.0}, colour, made::white(5 * kPeriod + 500, 7000 + seed));
-      count += repeats_in(repeating({noise.begin() + 500, noise.end()}), 5).first_left_out ? 1 : 0;
+      count += repeats_in(repeating(settled(5, colour, 7000 + seed)), 5).first_left_out ? 1 : 0;
     }
     return count;
   };
@@ -105,6 +108,26 @@ TEST(RepeatsTest, SamplesThatDoNotCountAreLeftOut) {
   EXPECT_NEAR(sut->repeats.rms, 1.0, 0.09);
   for (std::size_t n = 0; n < r.size(); n += 8) weight[n] = 0.0;
   EXPECT_FALSE(repeated_residual(all, column_of(r), weight).has_value());
+}
+
+// Of two periods half of the mean square of their difference, where both samples count; the
+// interval by Wilson and Hilferty's chi-square, to 1e-4.
+TEST(RepeatsTest, OfTwoPeriodsTheNoiseIsThatOfTheirDifference) {
+  const std::vector<double> r = repeating(made::white(2 * kPeriod, 6));
+  std::vector<double> weight(r.size(), 1.0);
+  for (std::size_t n = 0; n < r.size(); n += 11) weight[n] = 0.0;
+  double square = 0.0;
+  double count = 0.0;
+  for (std::size_t n = 0; n < kPeriod; ++n) {
+    const double both = weight[n] * weight[n + kPeriod];
+    square += both * 0.5 * std::pow(r[n] - r[n + kPeriod], 2);
+    count += both;
+  }
+  const Repeats sut = repeated_residual({0, kPeriod, 2, 0.0}, column_of(r), weight)->repeats;
+  EXPECT_NEAR(sut.rms, std::sqrt(square / count), 1e-12);
+  const double part = 2.0 / (9.0 * sut.degrees_of_freedom);
+  EXPECT_NEAR(sut.low, sut.rms * std::pow(1.0 - part + 1.96 * std::sqrt(part), -1.5), 1e-3);
+  EXPECT_NEAR(sut.high, sut.rms * std::pow(1.0 - part - 1.96 * std::sqrt(part), -1.5), 1e-3);
 }
 
 TEST(RepeatsTest, WhatRepeatsExactlyHasNoNoise) {
