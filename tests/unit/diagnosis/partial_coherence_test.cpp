@@ -23,32 +23,49 @@ CoherenceResult coherence_in(const std::vector<double>& residual, const std::vec
   return coherence_of(r, std::vector<double>(u.size(), 1.0), signals);
 }
 
-std::vector<double> sum_of(const std::vector<double>& x, double a, const std::vector<double>& y,
-                           double b) {
-  std::vector<double> z(x.size());
-  for (std::size_t n = 0; n < z.size(); ++n) z[n] = a * x[n] + b * y[n];
-  return z;
-}
-
 // Both have white spectra: the coherence is 1/(1 + 0.25) at every line, with a bias of
 // (1 - c)^2 / n_d and a spread that 127 lines average.
 TEST(PartialCoherenceTest, ACoherentShareIsSignalOverSignalAndNoise) {
   const auto v = made::white(kCount, 2);
   const CoherenceResult sut =
-      coherence_in(sum_of(v, 1.0, made::white(kCount, 3), 0.5), made::ride(kCount, 1), v);
+      coherence_in(made::mix({{1.0, v}, {0.5, made::white(kCount, 3)}}), made::ride(kCount, 1), v);
   ASSERT_EQ(sut.partial.size(), 1u);
   EXPECT_EQ(sut.partial[0].channel, "v");
   EXPECT_TRUE(sut.partial[0].significant);
   double mean = 0.0;
   for (const double c : sut.partial[0].coherence) mean += c;
   EXPECT_NEAR(mean / static_cast<double>(sut.partial[0].coherence.size()), 0.8, 0.02);
+  // A twentieth of the record: 256 samples, 45 halfway over each other, lines 2 to 127; DG-46.
+  const double averages = 45.0 / (1.0 + 44.0 / 45.0 / 18.0);
+  EXPECT_NEAR(sut.independent_averages, averages, 1e-9);
+  ASSERT_EQ(sut.frequency_hz.size(), 126u);
+  EXPECT_DOUBLE_EQ(sut.frequency_hz.front(), 2.0 * made::kRateHz / 256.0);
+  EXPECT_NEAR(sut.partial_threshold, 1.0 - std::pow(0.01 / 126.0, 1.0 / (averages - 2.0)), 1e-9);
+  EXPECT_NEAR(sut.ordinary_threshold, 1.0 - std::pow(0.01 / 126.0, 1.0 / (averages - 1.0)), 1e-9);
+  const ChannelCoherence& u = sut.ordinary[0];
+  EXPECT_NEAR(u.p, std::min(1.0, 126.0 * std::pow(1.0 - u.highest, averages - 1.0)), 1e-9);
+}
+
+// 20 000 samples know the power to 1 %, a line of 100 records of 11 segments the density to 3 %. By
+// chance the input takes a tenth of 11.
+TEST(PartialCoherenceTest, WhatNoInputTellsHasItsWholePower) {
+  double power = 0.0;
+  double density = 0.0;
+  for (std::uint64_t i = 0; i < 300; i += 3) {
+    const auto white = [i](std::uint64_t seed) { return made::white(200, i + seed); };
+    const CoherenceResult sut = coherence_in(white(0), white(1), white(2));
+    power += 0.01 * sut.incoherent_rms * sut.incoherent_rms;
+    density += 0.01 * sut.residual_density[5];
+  }
+  EXPECT_NEAR(power, 1.0, 0.03);
+  EXPECT_NEAR(density * made::kRateHz / 2.0, 1.0, 0.1);
 }
 
 TEST(PartialCoherenceTest, APathIsSeenWhereItIs) {
   const auto v = made::white(kCount, 5);
   const auto mode = made::answer({0.01}, made::mode(12.0, 0.02), v);
-  const CoherenceResult sut =
-      coherence_in(sum_of(mode, 1.0, made::white(kCount, 6), 0.5), made::ride(kCount, 4), v);
+  const CoherenceResult sut = coherence_in(made::mix({{1.0, mode}, {0.5, made::white(kCount, 6)}}),
+                                           made::ride(kCount, 4), v);
   EXPECT_TRUE(sut.partial[0].significant);
   EXPECT_NEAR(sut.partial[0].highest_hz, 12.0, 0.8);  // two lines
   // Far from the mode there is nothing.
@@ -63,8 +80,10 @@ TEST(PartialCoherenceTest, APathIsSeenWhereItIs) {
 // together they go, but only by the input.
 TEST(PartialCoherenceTest, WhatTheInputTellsIsTakenOut) {
   const auto u = made::white(kCount, 7);
-  const auto v = sum_of(made::answer({1.0}, {1.0, -0.5}, u), 1.0, made::white(kCount, 8), 0.5);
-  const auto r = sum_of(made::answer({0.3, 0.2}, {1.0, 0.3}, u), 1.0, made::white(kCount, 10), 0.2);
+  const auto v =
+      made::mix({{1.0, made::answer({1.0}, {1.0, -0.5}, u)}, {0.5, made::white(kCount, 8)}});
+  const auto r =
+      made::mix({{1.0, made::answer({0.3, 0.2}, {1.0, 0.3}, u)}, {0.2, made::white(kCount, 10)}});
   const CoherenceResult sut = coherence_in(r, u, v);
   EXPECT_FALSE(sut.partial[0].significant);
   ASSERT_EQ(sut.ordinary.size(), 1u);
@@ -77,7 +96,7 @@ TEST(PartialCoherenceTest, WhatTheInputTellsIsTakenOut) {
 TEST(PartialCoherenceTest, AChannelThatIsTheInputTellsNothingMore) {
   const auto u = made::white(kCount, 11);
   const CoherenceResult sut =
-      coherence_in(sum_of(u, 0.5, made::white(kCount, 12), 0.2), u, sum_of(u, 2.0, u, 1.0));
+      coherence_in(made::mix({{0.5, u}, {0.2, made::white(kCount, 12)}}), u, made::mix({{3.0, u}}));
   EXPECT_FALSE(sut.partial[0].significant);
   EXPECT_EQ(sut.partial[0].highest, 0.0);
 }
