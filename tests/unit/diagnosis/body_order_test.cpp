@@ -22,11 +22,8 @@ Signals signals_of(const Body& body, double limit) {
   const auto u = made::ride(kCount, 1);
   auto y = made::answer(body, u);
   const double rms = made::rms_of(y);
-  const auto noise = made::white(kCount, 3);
-  for (std::size_t n = 0; n < kCount; ++n) {
-    y[n] = std::clamp(y[n], -limit * rms, limit * rms) + 0.05 * rms * noise[n];
-  }
-  return made::signals_of(u, y);
+  for (double& each : y) each = std::clamp(each, -limit * rms, limit * rms);
+  return made::signals_of(u, made::mix({{1.0, y}, {0.05 * rms, made::white(kCount, 3)}}));
 }
 
 /// A body of order 2 with a limit at its output, fitted.
@@ -64,6 +61,9 @@ TEST(OrderInsteadTest, WithoutABendALongResponseSaysThatModesAreMissing) {
     const double long_rmse = baseline.impulse_response_rmse;
     EXPECT_EQ(order_instead(baseline.model, signals, blocks, 2, long_rmse, {}), order);
     EXPECT_EQ(order_instead(baseline.model, signals, blocks, 2, kUnknown, {}), std::nullopt);
+    EXPECT_EQ(order_instead(baseline.model, signals, blocks, 0, long_rmse, {}), std::nullopt);
+    EXPECT_EQ(order_instead(baseline.model, signals, blocks, 2, long_rmse, {.most_effects = 0}),
+              std::nullopt);
   }
 }
 

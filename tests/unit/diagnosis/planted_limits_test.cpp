@@ -21,11 +21,7 @@ constexpr double kNoise = 0.2;
 Measurement with_path(double path, std::size_t count = kCount) {
   const std::vector<double> input = made::ride(count, 3);
   const std::vector<double> other = made::ride(count, 5);
-  const std::vector<double> noise = white(count, 4);
-  std::vector<double> force(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    force[n] = input[n] + path * other[n] + kNoise * noise[n];
-  }
+  const auto force = made::mix({{1.0, input}, {path, other}, {kNoise, white(count, 4)}});
   return made::measurement_of(
       {{"a_y", "m/s^2", input}, {"a_x", "m/s^2", other}, {"f", "N", force}});
 }
@@ -95,7 +91,7 @@ TEST(PlantedLimitsTest, AShortRecordShowsOnlyWhatIsLarge) {
   const Diagnosis sut = diagnose(with_path(0.0, 2000), {});
   const PlantedLimit* limit = limit_of(sut, "coupled_input");
   ASSERT_NE(limit, nullptr);
-  EXPECT_GT(limit->half, 0.9 * std::sqrt(0.384) * kNoise);
+  EXPECT_NEAR(limit->half, std::sqrt(0.384) * kNoise, 0.15 * std::sqrt(0.384) * kNoise);
 }
 
 // Behind the noise model slow noise is smaller than white noise of the same RMS.
@@ -103,12 +99,8 @@ TEST(PlantedLimitsTest, SlowNoiseIsWhitenedBeforeTheLimitIsTaken) {
   const std::vector<double> input = white(kCount, 3);
   const std::vector<double> e = white(kCount, 4);
   const auto limit_under = [&](double pole) {
-    std::vector<double> force(kCount, 0.0);
-    double noise = 0.0;
-    for (std::size_t n = 0; n < kCount; ++n) {
-      noise = pole * noise + std::sqrt(1.0 - pole * pole) * e[n];
-      force[n] = input[n] + kNoise * noise;
-    }
+    const auto noise = made::answer({std::sqrt(1.0 - pole * pole)}, {1.0, -pole}, e);
+    const auto force = made::mix({{1.0, input}, {kNoise, noise}});
     return diagnose(made::measurement_of({{"a_y", "m/s^2", input}, {"f", "N", force}}), {})
         .detection_limit;
   };

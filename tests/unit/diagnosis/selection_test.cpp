@@ -52,50 +52,53 @@ TEST(SelectionTest, WhatSurrogatesGiveAsWellIsNotChosen) {
   EXPECT_THAT(tied_kinds(sut, 1, 2.0, {}), IsEmpty());
 }
 
-// 800 samples: ln(1.5) 800 = 324 for the error, ln(800) = 6.7 a number.
-TEST(SelectionTest, AModelThatExplainsMoreEarnsItsNumbers) {
-  const std::vector<Trial> sut{even("tone", 1.5, 1), even("drift", 1.0, 9), even("delay", 2.0, 1)};
-  EXPECT_EQ(chosen_of(sut, 3.0, {}), 1u);
+// 800 samples: 800 ln(1.5) = 324 or 800 ln(1.001) = 0.8 for the error, ln(800) = 6.7 a number.
+TEST(SelectionTest, AModelEarnsItsNumbersByWhatItExplains) {
+  EXPECT_EQ(
+      chosen_of({even("tone", 1.5, 1), even("drift", 1.0, 9), even("delay", 2.0, 1)}, 3.0, {}), 1u);
+  EXPECT_EQ(chosen_of({even("drift", 1.0, 10), even("tone", 1.001, 1)}, 3.0, {}), 1u);
+  EXPECT_EQ(chosen_of({even("tone", 1.0, 0), even("drift", 0.0, 12)}, 3.0, {}), 1u) << "no error";
+  EXPECT_EQ(chosen_of({even("tone", 5.0, 3)}, 3.0, {}), 0u) << "the only one";
 }
 
-// 800 ln(1.001) = 0.8 for the error, nine numbers more cost 60.
-TEST(SelectionTest, NumbersThatExplainNothingCostMoreThanTheyBring) {
-  const std::vector<Trial> sut{even("drift", 1.0, 10), even("tone", 1.001, 1)};
-  EXPECT_EQ(chosen_of(sut, 3.0, {}), 1u);
-}
-
-// An error 1 % larger and 0.993 of the gain in squares, (9 - 1.02)/(9 - 1): a tie.
+// An error 1 % larger and 0.993 of the gain in squares, (9 - 1.02)/(9 - 1), tie; from a square
+// of 1.1 it has 0.08/0.1 of the gain.  Errors 3 % apart tie at most: squares 1.0609.
 TEST(SelectionTest, TheSimplerWinsWhereItHasNearlyAllOfTheGain) {
-  const std::vector<Trial> sut{even("drift", 1.0, 2), even("tone", 1.02, 1)};
-  EXPECT_EQ(chosen_of(sut, 3.0, {}), 1u);
-  // From a square of 1.1 the simpler one has 0.08/0.1 of the gain.
-  EXPECT_EQ(chosen_of(sut, std::sqrt(1.1), {}), 0u);
-}
-
-// Errors 3 % apart tie at most: squares 1.0609.
-TEST(SelectionTest, AnErrorThatIsClearlyLargerIsNoTie) {
-  const auto chosen = [](double square) {
-    return chosen_of({even("drift", 1.0, 2), even("tone", square, 1)}, 10.0, {});
+  const auto chosen = [](double square, double current) {
+    return chosen_of({even("drift", 1.0, 2), even("tone", square, 1)}, current, {});
   };
-  EXPECT_EQ(chosen(1.060), 1u);
-  EXPECT_EQ(chosen(1.062), 0u);
+  EXPECT_EQ(chosen(1.02, 3.0), 1u);
+  EXPECT_EQ(chosen(1.02, std::sqrt(1.1)), 0u);
+  EXPECT_EQ(chosen(1.060, 10.0), 1u);
+  EXPECT_EQ(chosen(1.062, 10.0), 0u);
 }
 
-// Differences +-0.6 with a mean of 0.1: t = 0.1/(0.64/sqrt(8)) = 0.44 < 1.
+// Larger than 1 by `mean` in the mean, and by t standard errors: +-d about it, t = mean sqrt 7/d.
+std::vector<double> larger(double mean, double t) {
+  std::vector<double> squares(kBlocks, 1.0 + mean);
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    squares[b] += (b % 2 == 0 ? 1.0 : -1.0) * mean * std::sqrt(7.0) / t;
+  }
+  return squares;
+}
+
 TEST(SelectionTest, WhatTheBlocksDoNotDistinguishTies) {
-  std::vector<double> uneven(kBlocks, 1.0);
-  for (std::size_t b = 0; b < kBlocks; ++b) uneven[b] += b % 2 == 0 ? 0.7 : -0.5;
-  const std::vector<Trial> sut{even("drift", 1.0, 9), tried("tone", uneven, 1)};
-  EXPECT_EQ(chosen_of(sut, std::sqrt(1.2), {}), 1u);
+  const auto chosen = [](double t) {
+    return chosen_of({even("drift", 1.0, 9), tried("tone", larger(0.1, t), 1)}, std::sqrt(1.2), {});
+  };
+  EXPECT_EQ(chosen(0.9), 1u);
+  EXPECT_EQ(chosen(1.1), 0u);
 }
 
-// As above, t = 0.44 < 2: rounding may have decided which of them has the smaller error.
+// Below two standard errors rounding may have decided which of them has the smaller error.
 TEST(SelectionTest, OfAsManyNumbersTheKindThatStandsFirstInTheListIsNamed) {
-  std::vector<double> uneven(kBlocks, 1.0);
-  for (std::size_t b = 0; b < kBlocks; ++b) uneven[b] += b % 2 == 0 ? 0.7 : -0.5;
-  const std::vector<Trial> sut{even("dead_zone", 1.0, 2), tried("hysteresis", uneven, 2)};
-  EXPECT_EQ(chosen_of(sut, std::sqrt(1.2), {}), 1u);
-  EXPECT_EQ(chosen_of(sut, std::sqrt(1.2), {}, [](const Trial&) { return false; }), 0u)
+  const auto chosen = [](double t, const std::function<bool(const Trial&)>& worth_adding = {}) {
+    return chosen_of({even("dead_zone", 1.0, 2), tried("hysteresis", larger(0.02, t), 2)},
+                     std::sqrt(2.0), {}, worth_adding);
+  };
+  EXPECT_EQ(chosen(1.9), 1u);
+  EXPECT_EQ(chosen(2.1), 0u);
+  EXPECT_EQ(chosen(1.9, [](const Trial&) { return false; }), 0u)
       << "only if it is worth adding itself";
 }
 
@@ -116,15 +119,6 @@ TEST(SelectionTest, AnErrorBeyondAnyTestIsNoImprovement) {
   EXPECT_FALSE(worth_it(compared(near, far), {}, 0.0, 1));
 }
 
-TEST(SelectionTest, AModelWithoutErrorIsChosen) {
-  const std::vector<Trial> sut{even("tone", 1.0, 0), even("drift", 0.0, 12)};
-  EXPECT_EQ(chosen_of(sut, 3.0, {}), 1u);
-}
-
-TEST(SelectionTest, OneTrialIsTheChoice) {
-  EXPECT_EQ(chosen_of({even("tone", 5.0, 3)}, 3.0, {}), 0u);
-}
-
 TEST(SelectionTest, TiesNameOtherKindsOnceInTheirOrder) {
   const std::vector<Trial> sut{even("drift", 1.0, 2),  even("tone", 1.01, 3),
                                even("drift", 1.01, 4), even("delay", 1.02, 5),
@@ -132,27 +126,20 @@ TEST(SelectionTest, TiesNameOtherKindsOnceInTheirOrder) {
   EXPECT_THAT(tied_kinds(sut, 0, 3.0, {}), ElementsAre("tone", "delay"));
 }
 
-Comparison of(double rmse_ratio, double p) { return {.rmse_ratio = rmse_ratio, .p = p}; }
-
-// 0.01 is below the fall of a large improvement, 0.15: p counts once for every candidate.
+// p counts once for every candidate, or, from a fall of 15 % on, once.
 TEST(SelectionTest, ASmallImprovementMustBeCertainForAllCandidates) {
-  const SearchOptions options;
-  EXPECT_TRUE(worth_it(of(0.95, 0.9e-4), options, 0.01, 10));
-  EXPECT_FALSE(worth_it(of(0.95, 1.1e-4), options, 0.01, 10));
-  EXPECT_TRUE(worth_it(of(0.95, 1.1e-4), options, 0.01, 9));
-  EXPECT_FALSE(worth_it(of(0.995, 1e-12), options, 0.01, 1)) << "half a percent, however certain";
-  EXPECT_TRUE(worth_it(of(0.985, 1e-12), options, 0.01, 1));
-}
-
-TEST(SelectionTest, ALargeImprovementIsJudgedOnce) {
-  const SearchOptions options;
-  EXPECT_TRUE(worth_it(of(0.80, 0.0099), options, 0.01, 1000));
-  EXPECT_FALSE(worth_it(of(0.80, 0.01), options, 0.01, 1));
-}
-
-TEST(SelectionTest, AWorseModelIsWorthNothing) {
-  EXPECT_FALSE(worth_it(of(1.2, 0.0), {}, 0.01, 1));
-  EXPECT_FALSE(worth_it(of(std::numeric_limits<double>::quiet_NaN(), 0.0), {}, 0.01, 1));
+  const auto sut = [](double rmse_ratio, double p, std::size_t candidates) {
+    return worth_it({.rmse_ratio = rmse_ratio, .p = p}, {}, 0.01, candidates);
+  };
+  EXPECT_TRUE(sut(0.95, 0.9e-4, 10));
+  EXPECT_FALSE(sut(0.95, 1.1e-4, 10));
+  EXPECT_TRUE(sut(0.95, 1.1e-4, 9));
+  EXPECT_FALSE(sut(0.995, 1e-12, 1)) << "half a percent, however certain";
+  EXPECT_TRUE(sut(0.985, 1e-12, 1));
+  EXPECT_TRUE(sut(0.80, 0.0099, 1000));
+  EXPECT_FALSE(sut(0.80, 0.01, 1));
+  EXPECT_FALSE(sut(1.2, 0.0, 1)) << "worse";
+  EXPECT_FALSE(sut(std::numeric_limits<double>::quiet_NaN(), 0.0, 1));
   EXPECT_FALSE(worth_it({}, {}, 0.0, 1)) << "as it is where nothing was compared";
 }
 
