@@ -137,11 +137,7 @@ void add_control_model_command(command_line::Command& cli, int& status) {
       "Example: stillhand control-model model.json run1/session.mcap --trial I --save "
       "control.json");
   verb.add_option("MODEL", arguments->model, "model file").required();
-  verb.add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
-      .required();
-  verb.add_option("--trial", arguments->read.trial,
-                  "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(verb, arguments->read);
+  measurement::add_recording_options(verb, arguments->recording, arguments->read);
   verb.add_option("--save", arguments->save, "file of the control model")
       .required()
       .check(settings::check_name);

@@ -123,11 +123,7 @@ void add_predict_command(command_line::Command& cli, int& status) {
       "stillhand "
       "predict model.json ride.csv --out prediction.csv");
   verb.add_option("MODEL", arguments->model, "model file").required();
-  verb.add_option("REC", arguments->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
-      .required();
-  verb.add_option("--trial", arguments->read.trial,
-                  "trial of a session's recording: its number, or the letter of its condition");
-  measurement::add_read_options(verb, arguments->read);
+  measurement::add_recording_options(verb, arguments->recording, arguments->read);
   verb.add_option("--out", arguments->out,
                   "CSV file of the prediction, with the measured output if REC has it")
       .required()

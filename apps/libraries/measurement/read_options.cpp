@@ -27,7 +27,7 @@ std::vector<command_line::Option> add_read_options(command_line::Command& verb,
   if (isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0) {
     options.ask = [](TableFile& file) { return ask_mapping(file, std::cin, std::cerr); };
   }
-  command_line::Option map =
+  const auto map =
       verb.add_option_function<std::vector<std::string>>(
               "--map",
               [&options](const std::vector<std::string>& words) {
@@ -42,7 +42,7 @@ std::vector<command_line::Option> add_read_options(command_line::Command& verb,
           .type_name("'TITLE=NAME [UNIT]'")
           .takes_all()
           .group(kGroup);
-  command_line::Option file =
+  const auto file =
       verb.add_option(
               "--map-file", options.map_file,
               "YAML file with the mapping (map, rate_hz, separator, decimal). If it does not "
@@ -50,33 +50,39 @@ std::vector<command_line::Option> add_read_options(command_line::Command& verb,
           .check(settings::check_name)
           .excludes(map)
           .group(kGroup);
-  command_line::Option rate = verb.add_option_function<double>(
-                                      "--sample-rate",
-                                      [&options](double rate_hz) {
-                                        options.mapping.rate_hz =
-                                            check_rate_hz(rate_hz, "--sample-rate");
-                                      },
-                                      "sample rate [Hz] of a file without times")
-                                  .group(kGroup);
-  command_line::Option separator =
-      verb.add_option_function<std::string>(
-              "--separator",
-              [&options](const std::string& word) {
-                options.mapping.form.separator = parse_separator(word, "--separator");
-              },
-              "column separator of a text file [found from the content]")
-          .type_name("{comma,semicolon,tab,blank}")
-          .group(kGroup);
-  command_line::Option decimal = verb.add_option_function<std::string>(
-                                         "--decimal",
-                                         [&options](const std::string& word) {
-                                           options.mapping.form.decimal =
-                                               parse_decimal(word, "--decimal");
-                                         },
-                                         "decimal sign of a text file [found from the content]")
-                                     .type_name("{point,comma}")
-                                     .group(kGroup);
+  const auto rate = verb.add_option_function<double>(
+                            "--sample-rate",
+                            [&options](double rate_hz) {
+                              options.mapping.rate_hz = check_rate_hz(rate_hz, "--sample-rate");
+                            },
+                            "sample rate [Hz] of a file without times")
+                        .group(kGroup);
+  const auto separator = verb.add_option_function<std::string>(
+                                 "--separator",
+                                 [&options](const std::string& word) {
+                                   options.mapping.form.separator =
+                                       parse_separator(word, "--separator");
+                                 },
+                                 "column separator of a text file [found from the content]")
+                             .type_name("{comma,semicolon,tab,blank}")
+                             .group(kGroup);
+  const auto decimal = verb.add_option_function<std::string>(
+                               "--decimal",
+                               [&options](const std::string& word) {
+                                 options.mapping.form.decimal = parse_decimal(word, "--decimal");
+                               },
+                               "decimal sign of a text file [found from the content]")
+                           .type_name("{point,comma}")
+                           .group(kGroup);
   return {map, file, rate, separator, decimal};
+}
+
+void add_recording_options(command_line::Command& verb, std::string& recording,
+                           ReadOptions& options) {
+  verb.add_option("REC", recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound").required();
+  verb.add_option("--trial", options.trial,
+                  "trial of a session's recording: its number, or the letter of its condition");
+  add_read_options(verb, options);
 }
 
 void add_heaviest_option(command_line::Command& verb, double& heaviest_kg) {

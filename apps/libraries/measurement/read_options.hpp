@@ -16,6 +16,10 @@ namespace stillhand::measurement {
 std::vector<command_line::Option> add_read_options(command_line::Command& verb,
                                                    ReadOptions& options);
 
+/// Adds what a verb of one recording reads: REC, --trial, and how files are read.
+void add_recording_options(command_line::Command& verb, std::string& recording,
+                           ReadOptions& options);
+
 /// Adds --heaviest, for a machine in place of a hand.  @param heaviest_kg  must outlive the parsing
 void add_heaviest_option(command_line::Command& verb, double& heaviest_kg);
 

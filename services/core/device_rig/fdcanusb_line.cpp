@@ -14,7 +14,7 @@ std::optional<std::uint32_t> number(std::string_view text) noexcept {
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
   const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole ? std::optional(value) : std::nullopt;
+  return whole && text.size() <= 8 ? std::optional(value) : std::nullopt;
 }
 
 /// Takes the first word off a line.

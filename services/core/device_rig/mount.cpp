@@ -41,9 +41,9 @@ Mount::Mount(const std::string& key, const std::string& text) {
   }
 }
 
-// Every axis holds a share of every channel, if only a small one.
+// Every axis holds a share of every channel, even of 0: 0 times NaN is NaN, so a reading without a
+// value leaves no axis with one.
 std::array<double, 3> Mount::turned(const std::array<double, 3>& reading) const noexcept {
-  // A reading that is NaN makes every product NaN: 0 times NaN is.
   return {product(rows_[0], reading), product(rows_[1], reading), product(rows_[2], reading)};
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/core/identification/rate_conversion.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <string>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
@@ -216,12 +217,10 @@ RateConversion to_control_rate(const DifferenceModel& model, const ConversionBan
     if (now.max_error < best.max_error) best = now;
   }
   if (!(best.max_error <= band.max_error)) {
-    const auto percent = [](double share) {
-      return std::to_string(std::round(1000.0 * share) / 10.0).substr(0, 4) + " %";
-    };
-    throw ConfigError("filter at 1 kHz for this model",
-                      "an error of " + percent(best.max_error) + " of the peak gain",
-                      "at most " + percent(band.max_error) + "; a lower order converts better");
+    throw ConfigError(
+        "filter at 1 kHz for this model",
+        fmt::format("an error of {:.2f} % of the peak gain", 100.0 * best.max_error),
+        fmt::format("at most {:.2f} %; a lower order converts better", 100.0 * band.max_error));
   }
   best.peak_gain = peak_gain(best.model);
   return best;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Distributions of Boost.Math behind plain functions: each is instantiated once, where each file
-/// that names one takes 5 s more to compile.  An upper tail is computed as such, so that a small
-/// one keeps its digits.  Pure. Degrees of freedom are above 0 and probabilities between 0 and 1;
-/// otherwise they throw std::domain_error.
+/// Distributions of Boost.Math behind plain functions.  Each is instantiated once: a file that
+/// names one of Boost's takes 2 to 4 s more to compile.  An upper tail is computed as such, so that
+/// a small one keeps its digits.  Pure. Degrees of freedom are above 0, probabilities between 0 and
+/// 1, values of chi-squared and F at least 0; otherwise they throw std::domain_error.
 namespace stillhand::statistics {
 
 /// P(Z <= z) and P(Z > z) of the standard normal distribution.

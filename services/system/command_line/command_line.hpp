@@ -14,7 +14,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// Command lines, by CLI11.  Its headers cost 6.8 s of a processor in each file that includes them;
+/// Command lines, by CLI11.  Its headers cost 4.8 s of a processor in each file that includes them;
 /// command_line.cpp and the help of `stillhand` alone do.
 ///
 /// A method does what CLI11's of the same name does.  Command and Option are handles: copies mean

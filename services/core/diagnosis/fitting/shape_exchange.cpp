@@ -145,7 +145,7 @@ std::optional<Model> with_shape_of(const Effect& other, const Model& model,
 }
 
 Reading read_as(const Effect& law, const Model& curve, const Signals& signals) {
-  constexpr int kScales = 29;  // from 0.08 to 12, a fifth apart
+  constexpr int kScales = 29;  // from 1.2^-14 to 1.2^14
   const FreeRun run = free_run(curve, signals);
   if (!run.finite) return {};
   const std::vector<double> phi = shaped(curve.effects.back(), run.argument, 1.0, signals);
