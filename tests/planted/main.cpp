@@ -56,7 +56,8 @@ int main(int argc, char** argv) {
                  "white, low_pass, pink, heavy_tailed, uneven; default: white, for none drawn");
   app.add_flag("--gaps", plan.gaps, "with gaps and single rows lost");
   app.add_option("--together", plan.together, "kinds planted at once");
-  app.add_flag_callback("--pairs", [&] { plan.together = 2; }, "the same as --together 2");
+  const auto pairs = [&] { plan.together = 2; };
+  app.add_flag_callback("--pairs", pairs, "the same as --together 2");
   app.add_option("--least-evidence", plan.least_evidence,
                  "draw an effect again until it shows this clearly: samples (left / noise)^2");
   app.add_option("--length", plan.length_s, "of a recording [s]");

@@ -123,7 +123,8 @@ TEST(ArmFitTest, LeavesOutAReflexThatIsNotThere) {
               std::sqrt((14.0 / 12.0) / (6.0 / 4.0)), 1e-12);
 }
 
-// Spreads of up to 20 % leave 1.5 % of a mean over 400 people; two digits of the rounding.
+// Spreads of up to a quarter leave 1.3 % of a mean over 400 people; the mean arm is rounded to two
+// digits or more, 1.1 by up to 4.5 %.
 TEST(ArmFitTest, TheMeanArmIsThatOfThePopulation) {
   ArmValues mean{};
   for (int i = 0; i < 400; ++i) {

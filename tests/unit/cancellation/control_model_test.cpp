@@ -236,11 +236,14 @@ TEST(ControlModelTest, WhatIsTooStrongIsRefused) {
   EXPECT_EQ(refusal_of(model), Refusal::kNone);
   model.paths[0].gain = 17.0;
   EXPECT_EQ(refusal_of(model), Refusal::kPath);
-  // A map by its largest value within 0.6 rad, at -0.6 or between.
-  model.paths[0].map = {-1.2, 1.2, {99.0, 9.0, 0.0, 0.0, 8.0}};
-  for (const double gain : {1.1, 1.2}) {
-    model.paths[0].gain = gain;
-    EXPECT_EQ(refusal_of(model), gain < 1.15 ? Refusal::kNone : Refusal::kPath);
+  // A map by its largest value within 0.6 rad: 0.2 13 + 0.8 8 = 9 at -0.6, or 9 at the knot -0.5.
+  for (const std::vector<double>& values :
+       {std::vector{13.0, 8.0, 0.0, 0.0, 8.0}, std::vector{0.0, 9.0, 0.0, 0.0, 8.0}}) {
+    model.paths[0].map = {-1.0, 1.0, values};
+    for (const double gain : {1.1, 1.2}) {
+      model.paths[0].gain = gain;
+      EXPECT_EQ(refusal_of(model), gain < 1.15 ? Refusal::kNone : Refusal::kPath) << values[0];
+    }
   }
   model.paths = {{Channel::kAccelX, 0.0, {}, -59.0}, {Channel::kRoll, 0.1, {}, 588.0}};
   EXPECT_EQ(refusal_of(model), Refusal::kNone);

@@ -83,7 +83,7 @@ TEST_F(ArmingTest, WithoutPermissionTheForceRampsDownAndThenTheDriverGoesOff) {
 
 TEST_F(ArmingTest, NoForceBeforeTheDriveSaysThatItFollows) {
   in_.wanted = true;
-  // Each trial anew, also behind one that was longer than the drive may take to follow.
+  // In each trial, also behind one that was longer than the drive may take to follow.
   for (in_.trial = 1; in_.trial < 3; ++in_.trial) {
     obeys_ = false;
     for (int i = 0; i < 10; ++i) EXPECT_FALSE(step().follows);

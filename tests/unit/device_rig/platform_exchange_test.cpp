@@ -41,7 +41,8 @@ TEST_F(PlatformExchangeTest, AReplyThatComesAgainOrTooLateOrAnswersNothingIsNone
   EXPECT_EQ(other.sample().damaged, 1u);
 }
 
-// The time of the first one is that of the newest, by its place: it would look young.
+// 256 times are kept.  That of the 257th command lies in the place of the first one, and would make
+// a reply to the first one look young.
 TEST_F(PlatformExchangeTest, ACommandOfLongAgoIsForgotten) {
   const auto first = ask(1000 * kMs);
   const auto second = ask(1001 * kMs);

@@ -62,6 +62,7 @@ class Reader {
       const bool young = verdict == Verdict::kYoung || verdict == Verdict::kDrifted;
       if (young) lag_ms = std::max(lag_ms, (came_ - read) / clock_);
       if (verdict == Verdict::kTooSlow && !too_slow_ms) too_slow_ms = ms;
+      // Of the first time: a second one comes later.
       if (verdict == Verdict::kTooSlow && ms < *too_slow_ms + 300) slow_until_ms = ms + 1;
       old_ = verdict == Verdict::kOld ? old_ + 1 : 0;
       if (verdict == Verdict::kDrifted || verdict == Verdict::kTooSlow || old_ >= 10) {
@@ -94,6 +95,7 @@ TEST(ReplyClockTest, AReaderThatCarriesTooFewIsNeverBehindByMoreThan40Ms) {
 }
 
 TEST(ReplyClockTest, WhatNoClockIsIsTooSlowAndWhatMayBeOneIsEmptiedNowAndThen) {
+  // It is said for 200 ms, which ends a trial; then the clock begins again.
   for (const double carried : {0.985, 0.98, 0.97, 0.9, 0.7}) {
     Reader slower(carried);
     slower.run();

@@ -178,8 +178,8 @@ TEST(BaselineTest, AnOrderThatIsNoneOrARecordTooShortIsRefused) {
   EXPECT_THROW(fit_baseline(signals, blocks, -1), ConfigError);
   EXPECT_THROW(fit_baseline(signals, blocks, 13), ConfigError);
   const Signals few = signals_of(made::ride(50, 1), made::ride(50, 2));
-  EXPECT_THAT(support::refusal([&] { fit_baseline(few, {5, 10, 5}, 12); }),
-              testing::HasSubstr("usable samples"))
+  const auto fit = [&] { fit_baseline(few, {5, 10, 5}, 12); };
+  EXPECT_THAT(support::refusal(fit), testing::HasSubstr("usable samples"))
       << "the order is allowed";
 }
 

@@ -79,21 +79,22 @@ TEST(DetectionLinesTest, ASquareIsEvenAndACubeIsOdd) {
   EXPECT_GT(cube.even.p, 1e-3);
 }
 
-// Line j between harmonics, which are 12 apart, has the power (j mod 12)^2: 8 of them on each side
-// of a harmonic 43.5 in the mean, 1 + .. + 8^2 and 4^2 + .. + 11^2 over 16.  Even ones have ten
-// times as much, and all 50 groups 506 each.  Fisher's sum h has six degrees of freedom.
+// Line j has the power (j mod 12)^2, and harmonics lie 12 lines apart.  The 8 lines on each side of
+// one have 43.5 in the mean: (1 + .. + 8^2 and 4^2 + .. + 11^2)/16.  The even harmonics 2, 4 and 6
+// have 435, ten times that; the 11 lines between two harmonics have 506 together, 50 times.
+// Fisher's sum, 2 h, is chi-squared with six degrees of freedom.
 TEST(DetectionLinesTest, AGroupIsComparedWithTheLinesAroundItsOwn) {
   constexpr double kSamples = 1200.0;
   RepeatedResidual repeated{{100, 100, 12, 0.0}, {}, {}};
   for (std::size_t j = 0; j <= 600; ++j) repeated.lines.emplace_back(j % 12);
   for (const std::size_t j : {24, 48, 72}) repeated.lines[j] = std::sqrt(435.0);
-  const auto beside = [&](double output) {
+  const auto lines_at = [&](double output) {
     const std::vector<double> y = made::scaled_to(made::multisine(1300, 100, {2}, 1), output);
     return detection_lines(repeated, {1, 3}, made::signals_of(made::white(1300, 1), y));
   };
-  const LineGroup sut = beside(1.0).even;
+  const LineGroup sut = lines_at(1.0).even;
   EXPECT_THAT(sut.frequency_hz, testing::ElementsAre(2.0, 4.0, 6.0));
-  EXPECT_THAT(beside(1.0).odd.frequency_hz, testing::ElementsAre(5.0, 7.0, 9.0));
+  EXPECT_THAT(lines_at(1.0).odd.frequency_hz, testing::ElementsAre(5.0, 7.0, 9.0));
   EXPECT_NEAR(sut.output.front(), 1.0, 1e-9);
   EXPECT_NEAR(sut.residual.front(), std::sqrt(2.0 * 435.0) / kSamples, 1e-12);
   EXPECT_NEAR(sut.noise.front(), std::sqrt(2.0 * 43.5) / kSamples, 1e-12);
@@ -102,8 +103,8 @@ TEST(DetectionLinesTest, AGroupIsComparedWithTheLinesAroundItsOwn) {
   EXPECT_NEAR(sut.p, std::exp(-h) * (1.0 + h + h * h / 2.0), 1e-6 * sut.p);
   // A thousandth of the output, whose one line has N^2/2 times its square, is not tested.
   const double level = 1e3 * std::sqrt(3.0 * 391.5 * 2.0) / kSamples;
-  EXPECT_EQ(beside(0.99 * level).even.p, sut.p);
-  EXPECT_EQ(beside(1.01 * level).even.p, 1.0);
+  EXPECT_EQ(lines_at(0.99 * level).even.p, sut.p);
+  EXPECT_EQ(lines_at(1.01 * level).even.p, 1.0);
 }
 
 // A sine of RMS 1 squared is 1 - cos(2 .): one line of RMS 1/sqrt 2.

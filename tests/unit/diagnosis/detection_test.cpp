@@ -100,6 +100,7 @@ TEST(DetectionTest, EveryPlantedDependenceIsFoundAndNamed) {
   for (const Case& each : cases) {
     SCOPED_TRACE(std::string(each.question) + " " + each.channel);
     Measurement measurement = made_with(20, each.more);
+    // Far from 0: products are those of the deviations from the mean.
     for (double& value : measurement.channels[1].values) value += 4.0;
     const DetectionResult sut = detected_in(measurement);
     const Detection& found = asked(sut, each.question, each.channel);

@@ -165,7 +165,8 @@ TEST(EffectSizesTest, EachNumberIsItsClosedForm) {
         {"time_varying_gain", "linear", "highest_gain", 1.2},
         {"free_form", "force over a channel", "range", 0.5},
         {"free_form", "gain over a channel", "range", 0.6},
-        // Over the straight line of 1.8 in 2.9 the third height is -1 to 0.5 at 1.8; E(1) = 0.02.
+        // From first to last knot the curve rises by 1.8 over 2.9; its third knot, 1.8 on, lies 1.5
+        // above the first.  E(1) = 0.02.
         {"free_form", "curve inside the body", "range", (1.5 - 1.8 * 1.8 / 2.9) * 0.02 / a}}) {
     const auto effect = std::ranges::find_if(
         all, [&](const Effect& each) { return each.kind == row.kind && each.form == row.form; });
@@ -206,6 +207,11 @@ TEST(EffectSizesTest, AForceInsideTheBodyIsThatOfSmallMotions) {
   const double a = at_rest(kDenominator);
   EXPECT_NEAR(sut.value("yield_force"), 0.02 / a, 1e-9);
   EXPECT_NEAR(sut.value("stiffness_ratio"), a / (a + 0.01), 1e-9);
+  // With the slope 0 at rest B/A over N/A; the slope is that of a step of 1e-4: 3e-9.
+  const Sized level(made::effect_of("nonlinear_stiffness", "levelled inside the body", {}, {},
+                                    {0.02, -0.01, 0.005, 0.4, 0.1, 0.0, -0.01, 0.002}));
+  EXPECT_NEAR(level.value("threshold_force"),
+              std::abs(at(level.model.body.numerators[0]) / at(path.n)), 1e-8);
   // z = -y: where the output is positive, |z| has the slope -1.
   const Sized against(made::effect_of("asymmetry", "slopes inside the body", {}, {},
                                       {0.0, 0.0, 0.0, -0.1, -0.2, -0.2, 0.01, 0.0}));

@@ -52,7 +52,7 @@ TEST(EvaluationTest, ThroughPolesIsTheRecursionOfEveryStretch) {
 
 TEST(EvaluationTest, APredictionMayBeAMillionTimesTheOutput) {
   Signal output;
-  EXPECT_EQ(runaway_bound(output), 1e30);
+  EXPECT_EQ(runaway_bound(output), 1e30) << "nothing to compare with";
   output.mean = -3.0;
   output.deviation = 1.0;
   EXPECT_EQ(runaway_bound(output), 4e6);

@@ -36,11 +36,6 @@ inline std::vector<double> white(std::size_t count, std::uint64_t seed) {
 
 inline double rms_of(const std::vector<double>& x) { return signal::rms(x); }
 
-inline std::vector<double> sum_of(std::vector<double> left, const std::vector<double>& right) {
-  for (std::size_t n = 0; n < left.size(); ++n) left[n] += right[n];
-  return left;
-}
-
 /// Sum of signals, each with its factor.
 inline std::vector<double> mix(const std::vector<std::pair<double, std::vector<double>>>& parts) {
   std::vector<double> y(parts.front().second.size(), 0.0);
@@ -48,6 +43,10 @@ inline std::vector<double> mix(const std::vector<std::pair<double, std::vector<d
     for (std::size_t n = 0; n < y.size(); ++n) y[n] += factor * x[n];
   }
   return y;
+}
+
+inline std::vector<double> sum_of(const std::vector<double>& a, const std::vector<double>& b) {
+  return mix({{1.0, a}, {1.0, b}});
 }
 
 inline Eigen::VectorXd column_of(const std::vector<double>& x) {

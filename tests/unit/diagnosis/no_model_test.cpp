@@ -98,6 +98,8 @@ TEST(NoModelTest, AnInputThatGoesOnBeyondItsLimitShowsInTheOutput) {
   EXPECT_FALSE(is_named(3.0, 6000));
 }
 
+constexpr double kHeaviest_kg = 200.0;
+
 // Of y = gain u(t - lag) and noise that is `left` of its power, u a ride, by a static model.
 // @param end  after the search, or before it
 std::string reason_of(double gain, double lag_s, double left, bool end) {
@@ -107,14 +109,17 @@ std::string reason_of(double gain, double lag_s, double left, bool end) {
   const Measurement asked = made::measurement_of({{"u", "m/s^2", u}, {"y", "N", y}});
   const made::Studied of(asked, 0);
   const Model& model = of.baseline.model;
-  auto no = end ? no_model_of(asked, of.signals, of.blocks, model, of.screening.rmse(), 0, 200.0)
-                : exchanged_of(asked, of.signals, of.blocks, model, 0, 200.0);
+  auto no =
+      end ? no_model_of(asked, of.signals, of.blocks, model, of.screening.rmse(), 0, kHeaviest_kg)
+          : exchanged_of(asked, of.signals, of.blocks, model, 0, kHeaviest_kg);
   if (!no && !end) no = late_of(asked, of.signals, of.blocks, model, 0);
   return no ? no->reason : "";
 }
 
-// Another clock leaves less than a fifth, the future less than a tenth, of 83 % at 0.04 s.  In the
-// end 6 % have to be explained, and half for a mass, that of what is explained.
+// 1 s late: another clock must leave less than a fifth.  0.3 s is a body's lag.  0.04 and 0.08 s
+// early: the future must leave less than a tenth of the 0.83 that a static model leaves at 0.04 s.
+// In the end 6 % must be explained.  The gain is a mass, which is judged if half is explained: 220
+// kg are more than the heaviest.
 TEST(NoModelTest, AnotherReadingHasToExplainMostOfTheRest) {
   for (const auto& [gain, lag_s, left, end, reason] : {std::tuple{1.0, 1.0, 0.15, false, "clocks"},
                                                        {1.0, 1.0, 0.3, false, ""},

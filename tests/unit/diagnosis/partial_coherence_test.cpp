@@ -24,7 +24,7 @@ CoherenceResult coherence_in(const std::vector<double>& residual, const std::vec
 }
 
 // Both have white spectra: the coherence is 1/(1 + 0.25) at every line, with a bias of
-// (1 - c)^2 / n_d and a spread that 127 lines average.
+// (1 - c)^2 / n_d and a spread that 126 lines average.
 TEST(PartialCoherenceTest, ACoherentShareIsSignalOverSignalAndNoise) {
   const auto v = made::white(kCount, 2);
   const CoherenceResult sut =
@@ -47,7 +47,7 @@ TEST(PartialCoherenceTest, ACoherentShareIsSignalOverSignalAndNoise) {
 }
 
 // 20 000 samples know the power to 1 %, a line of 100 records of 11 segments the density to 3 %. By
-// chance the input takes a tenth of 11.
+// chance the input explains one of 11 averages, 9 % of the power, which the estimate gives back.
 TEST(PartialCoherenceTest, WhatNoInputTellsHasItsWholePower) {
   double power = 0.0;
   double density = 0.0;

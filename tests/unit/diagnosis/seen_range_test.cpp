@@ -92,7 +92,7 @@ TEST(SeenRangeTest, AMapGoesOnStraight) {
   note_seen(limited, signals_of(1.0));
   const auto far = run_of(limited, 4.0);
   EXPECT_DOUBLE_EQ(*std::ranges::max_element(far), 0.5) << "a limit stays one";
-  // u^2 from -1.5 to -4, where u is at sample 75: a slope of -1 at most.
+  // u^2, seen to -1.5; sample 75 has u = -4.  The tangent's slope, -3, is held to -1: 2.25 + 2.5.
   Model square = model_with(
       made::effect_of("asymmetry", "square at the input", {"u"},
                       {{"square_share", "-", 1.0, -2.0, 2.0}, constant("largest", "V", 1.0)}));

@@ -73,7 +73,7 @@ TEST_F(ShapeExchangeTest, TheSameShapeIsTheSameModelAtEachScale) {
     ASSERT_TRUE(sut) << scale;
     EXPECT_LT(difference(*sut, model), 1e-6) << scale;
   }
-  // A curve's scales are a fifth apart, from 0.08 to 12.
+  // A curve's scales are a fifth apart, from 1.2^-14 to 1.2^14.
   for (const int fifths : {-14, 1, 14}) {
     EXPECT_LT(read_as(play_with(std::pow(1.2, -fifths)), model, signals_).unread, 1e-6) << fifths;
   }

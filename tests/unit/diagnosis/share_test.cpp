@@ -16,8 +16,8 @@ constexpr std::size_t kCount = 6000;
 
 // Two parts of two blocks, d = 1: the residual of a block is its own share.  The blocks miss 3 by
 // -2, -1, 0 and 3, which is 4/3 14/4^2 for the variance of the mean; parts of shares 1.5 and 4.5 by
-// -3 and 3 of their sums, 2/1 18/4^2.  With 1 of the first part two of its products' roots are
-// larger than |r|^2 = 5: s^2 - 3 s = 0.1025 5/2.
+// -3 and 3 of their sums, 2/1 18/4^2.  The first part, of residuals 1 and 2, may grow by a
+// twentieth: (1 - s)^2 + (2 - s)^2 = 1.05^2 5, so s^2 - 3 s = 0.1025 5/2.
 TEST(ShareTest, TheStandardErrorIsThatOverTheBlocksOrThePartsTheLargerOne) {
   const Eigen::VectorXd d = Eigen::VectorXd::Ones(4);
   const auto sut = [&](const Eigen::Vector4d& residual) {

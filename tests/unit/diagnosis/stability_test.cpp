@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <utility>
 
 #include "services/core/diagnosis/model/other_phases.hpp"
@@ -46,8 +45,9 @@ TEST(StabilityTest, ASlightSpringIsProved) {
 }
 
 // With memory there is no slope at a place: the criterion does not hold for it.  Nor does it for a
-// spring four times as stiff within its gap as beyond: between the two resonances, of 3 and 6 Hz,
-// one response is behind its own and the other in front of it, more than a right angle apart.
+// spring four times as stiff within its gap as beyond: between the resonances of the soft and the
+// stiff body, 3 and 6 Hz, the soft one's response has turned round and the stiff one's has not yet,
+// so that they are more than a right angle apart.
 TEST(StabilityTest, WhatTheCriterionDoesNotHoldForIsTested) {
   for (const Model& sut : {looped("hysteresis", "elastic-plastic of the output", 1.0, 0.005, 0.0),
                            looped("dead_zone", "play of the output", 1.0, -0.1, 0.0)}) {
@@ -57,14 +57,8 @@ TEST(StabilityTest, WhatTheCriterionDoesNotHoldForIsTested) {
 
 // x y* at line k: each line keeps its size, and two signals their angle to each other.
 std::complex<double> shared(const std::vector<double>& x, const std::vector<double>& y, int k) {
-  std::complex<double> of_x = 0.0;
-  std::complex<double> of_y = 0.0;
-  for (std::size_t n = 0; n < x.size(); ++n) {
-    const double turn = static_cast<double>(n) * k / static_cast<double>(x.size());
-    of_x += x[n] * std::polar(1.0, -2.0 * std::numbers::pi * turn);
-    of_y += y[n] * std::polar(1.0, -2.0 * std::numbers::pi * turn);
-  }
-  return of_x * std::conj(of_y);
+  const double hz = k * made::kRateHz / static_cast<double>(x.size());
+  return made::response({{x}, {1.0}}, hz) * std::conj(made::response({{y}, {1.0}}, hz));
 }
 
 // Eq. DG-57 d.

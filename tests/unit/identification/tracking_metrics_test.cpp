@@ -226,8 +226,9 @@ TEST(TrackingMetricsTest, UnusableRecordsAreRefused) {
   // The highest line is 240, and its neighbours reach to 246.
   for (const std::size_t samples : {492u, 493u}) {
     const std::vector<double> still(samples, 0.0);
+    const auto metrics = [&] { tracking_metrics({100.0, still, still}, design); };
     EXPECT_EQ(
-        support::refusal([&] { tracking_metrics({100.0, still, still}, design); }),
+        support::refusal(metrics),
         samples == 492 ? "tracking.target_m: got 492 samples, want more than 492" : "accepted");
   }
   EXPECT_THROW(tracking_metrics(record, design, {0.015, 10.0, 1}), ConfigError);

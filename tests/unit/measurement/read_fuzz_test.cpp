@@ -228,7 +228,8 @@ std::string xdf_chunk(std::uint16_t tag, const std::string& content) {
   return chunk.str();
 }
 
-// Two streams of 150 samples: the recorder's clock is 0.5 s ahead of one, and 1.001 of the other.
+// Two streams of 150 samples.  The recorder's clock is 0.5 s ahead of the first one's and
+// runs 1.001 times as fast as the second one's.
 std::string good_xdf() {
   std::ostringstream file;
   file << "XDF:";
@@ -254,6 +255,8 @@ std::string good_xdf() {
 
 TEST(ReadFuzzTest, ASpoiltXdfFileIsReadOrRefused) {
   const RawColumns read = xdf_table(good_xdf(), "good.xdf", 300)->read({0, 1});
+  ASSERT_GE(read.time_s.size(), 149u);
+  ASSERT_EQ(read.values.size(), 2u);
   for (std::size_t n = 1; n < 149; ++n) {  // the ends may lie outside of the second by a rounding
     EXPECT_NEAR(read.time_s[n], 0.01 * static_cast<double>(n), 1e-10);
     EXPECT_EQ(read.values[0][n], static_cast<double>(n % 7) * 0.1);

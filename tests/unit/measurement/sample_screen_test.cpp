@@ -297,12 +297,12 @@ TEST(SampleFaultsTest, RunsLevelsAndDistancesAreThoseOfTheRows) {
 // ME-12, ME-14, ME-15.
 TEST(SampleFaultsTest, CountersOverflowsAndCoarseLevelsAreKnownByTheirShares) {
   const auto modulo = [](int count, int by) { return made(count, [=](int i) { return i % by; }); };
-  EXPECT_TRUE(counts_rows(modulo(500, 50))) << "9 of 499 steps go back";
+  EXPECT_TRUE(counts_rows(modulo(500, 50))) << "9 of 499 steps go back, below 2 %";
   EXPECT_FALSE(counts_rows(modulo(400, 40))) << "9 of 399";
   EXPECT_FALSE(counts_rows(made(400, [](int i) { return 0.5 * i; })));
   EXPECT_EQ(overflows(modulo(40, 16)).size(), 2u);
   EXPECT_TRUE(overflows(modulo(24, 16)).empty()) << "one jump";
-  EXPECT_TRUE(overflows(modulo(100, 16)).empty()) << "in time";
+  EXPECT_TRUE(overflows(modulo(100, 16)).empty()) << "at even intervals: the source's own";
   // Of n even levels the variance is (n^2 - 1)/12 steps^2, a hundredth of it is 1/12 at n = 10.05.
   EXPECT_EQ(coarse_levels(modulo(400, 4)), 4u);
   EXPECT_EQ(coarse_levels(modulo(400, 10)), 10u);

@@ -36,12 +36,14 @@ std::vector<Part> made_parts() {
   std::vector<Part> out;
   for (const PartRow& kind : kPartRows) {
     if (kind.make == nullptr) continue;
+    const std::size_t before = out.size();
     for (const session::ConditionRow& condition : session::condition_table()) {
       const auto part = std::ranges::find(condition.parts, kind.kind, &Part::kind);
       if (part == condition.parts.end()) continue;
       out.push_back(*part);
       break;
     }
+    EXPECT_GT(out.size(), before) << "no condition has part " << static_cast<int>(kind.kind);
   }
   return out;
 }
@@ -61,6 +63,8 @@ Recipe everything() {
     if (row.in_place_of || (row.filters_command && filtered)) continue;
     filtered = filtered || row.filters_command;
     out.parts.push_back(part);
+    // All three terms: no condition has a mass.
+    if (part.kind == PartKind::kImpedance) out.parts.back().values = {300.0, 20.0, 0.2};
   }
   return out;
 }

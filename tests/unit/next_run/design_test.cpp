@@ -53,7 +53,7 @@ TEST_P(EveryFamily, HasItsBandAndAMarginOfThePeak) {
   const Ride sut = ride_of({GetParam(), 3.0, 4.0, 1.0, 1.0, 1}, bounds());
   const auto peak = std::ranges::max(sut.accel_m_s2, {}, [](double a) { return std::abs(a); });
   EXPECT_LE(std::abs(peak), 0.98 * 7.35 + 1e-9);
-  EXPECT_GT(std::abs(peak), 0.85 * 7.35);
+  EXPECT_GT(std::abs(peak), 0.98 * 7.35 / 1.3);  // levels are tried in steps of 1.3
   double accel = 0.0, speed = 0.0;
   for (Tick n = 2'000; n < 22'000; ++n) {
     accel += std::pow(sut.motion.at(n).acceleration_m_s2, 2);

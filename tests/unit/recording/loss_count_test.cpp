@@ -18,7 +18,7 @@ TEST(LossCountTest, ASampleIsLostWhereEitherNumberIsMissing) {
       {"sent before the first sample", {{1'000'000, 5'000'000}}, 0, 0},
       {"missing by both counts once", {{1, 10}, {4, 13}}, 2, 0},
       {"a tick never reached the writer's DDS", {{1, 10}, {2, 14}}, 3, 3},
-      {"without ticks the sequence alone tells", {{1, -1}, {6, -1}}, 4, 0},
+      {"without ticks the sequence shows it", {{1, -1}, {6, -1}}, 4, 0},
       {"another session of the writer", {{1, 9000}, {2, 0}, {3, 1}}, 0, 0},
   };
   for (const auto& [what, samples, lost, not_sent] : cases) {

@@ -17,6 +17,7 @@
 namespace stillhand::recordings::converter_test {
 namespace {
 
+using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Pair;
 
@@ -101,8 +102,9 @@ TEST(ConverterTest, ASensedSampleTurnsAboutXAndLeavesToTheLeft) {
   ASSERT_EQ(all.size(), 3U);
   const std::vector<double> imu = Reader(all[0].cdr).numbers(37);
   EXPECT_THAT(std::span(imu).subspan(0, 5),
-              ElementsAre(std::sin(0.1), 0, 0, std::cos(0.1), 0));  // a covariance behind it
-  EXPECT_EQ(imu[16], -1.0);  // the angular velocity is not measured
+              ElementsAre(DoubleNear(std::sin(0.1), 1e-15), 0, 0, DoubleNear(std::cos(0.1), 1e-15),
+                          0));  // a covariance behind it
+  EXPECT_EQ(imu[16], -1.0);     // the angular velocity is not measured
   EXPECT_THAT(std::span(imu).subspan(25, 4), ElementsAre(1, -2, 3, 0));
   EXPECT_THAT(Reader(all[1].cdr).numbers(3), ElementsAre(0, 4, 0));
   EXPECT_THAT(Reader(all[2].cdr).joint(), Pair(0.1, -0.3));

@@ -85,7 +85,7 @@ struct Marks {
   }
 };
 
-// Six panels with every kind of text; three of them have numbers of five digits.
+// Six panels with every kind of text; four of them have numbers of five digits.
 Figure lettered(int columns, Legend legend) {
   Figure out = figure(columns, 6);
   out.height_px = 320 * 6 / columns;
@@ -113,7 +113,23 @@ TEST(PanelLayoutTest, NoTextCoversAnotherOrLeavesThePicture) {
                                 Legend::kBottomLeft, Legend::kBottomRight}) {
       const Figure asked = lettered(columns, legend);
       const Marks sut(asked);
-      EXPECT_EQ(lay_out(asked)[0].legend_place, legend);
+      ASSERT_EQ(std::ranges::count(sut.texts, "next", &Text::words), 6);
+      ASSERT_TRUE(std::ranges::any_of(sut.texts, &Text::is_small));
+      const std::vector<PanelLayout> layouts = lay_out(asked);
+      for (std::size_t i = 0; i < layouts.size(); ++i) {
+        const PanelLayout& at = layouts[i];
+        ASSERT_EQ(at.legend_place, legend);
+        EXPECT_LE(at.plot.right, asked.width_px);
+        if (legend == Legend::kAbove) {
+          for (const LegendEntry& each : at.entries) EXPECT_LT(each.middle_px + 6.5, at.plot.top);
+        } else {
+          EXPECT_GT(at.legend.left, at.plot.left);
+          EXPECT_LT(at.legend.right, at.plot.right);
+        }
+        if ((i + 1) % static_cast<std::size_t>(columns) != 0) {
+          EXPECT_GT(layouts[i + 1].y_label_px - 6.5, at.plot.right);
+        }
+      }
       for (std::size_t i = 0; i < sut.texts.size(); ++i) {
         const auto& [words, box, is_small] = sut.texts[i];
         ASSERT_TRUE(box.left >= 0.0 && box.right <= asked.width_px && box.top >= 0.0 &&

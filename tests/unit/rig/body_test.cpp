@@ -213,8 +213,9 @@ TEST(BodyTest, ASteadyPushSinksIntoTheRubberByForceOverStiffness) {
 }
 
 // Critically damped from rest at x0, RG-4: x0 (1 + t/tau) exp(-t/tau), which the held force of the
-// peg meets to a part of a tick.  Acceleration x0 / tau^2 at most, 4 m/s^2 here, so the rate
-// changes by 0.04 rad/s a tick; 1.5 times that for the force steps of the muscles that relax.
+// peg meets to a tick, in which x falls by 1/(e tau) of x0 a second at most.  Acceleration x0 /
+// tau^2 at most, 4 m/s^2 here, so the rate changes by 0.04 rad/s a tick; 1.5 times that for the
+// force steps of the muscles that relax.
 TEST(BodyTest, ThePegDrawsTheStickSmoothlyToExactlyZero) {
   const StickConfig stick = frictionless();
   Body sut(BodyConfig{}, stick);
@@ -232,7 +233,7 @@ TEST(BodyTest, ThePegDrawsTheStickSmoothlyToExactlyZero) {
     ASSERT_GE(out.theta_rad, -1e-6) << n;
     const double along = (n + 1) * kDt_s / stick.peg_seat_time_s;
     ASSERT_NEAR(out.theta_rad * stick.lever_m, start_m * (1.0 + along) * std::exp(-along),
-                0.01 * start_m);
+                0.0037 * start_m);
     ASSERT_LT(std::abs(out.omega_rad_s - before_rad_s), jump_rad_s) << n;
     before_rad = out.theta_rad;
     before_rad_s = out.omega_rad_s;

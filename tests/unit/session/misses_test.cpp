@@ -121,8 +121,8 @@ TEST(MissesTest, TwoThatStandOneAfterTheOtherAreTwo) {
   EXPECT_EQ(sut[1].process, "sensing");
 }
 
-// Sensing comes back after 20 ms, and cancellation stands for another 60; behind half of its
-// silence it is late by itself no more.
+// Sensing comes back after 20 ms, and cancellation stands for another 60.  A source that was silent
+// for at least half of the gap (45 of 80 ms) takes all of it.
 TEST(MissesTest, WhoStandsLongerThanItsSourceIsLateByItself) {
   const auto sut = misses_in(session({{"sensing", 2000, 2020}, {"cancellation", 2000, 2080}}));
   ASSERT_THAT(sut, SizeIs(2));

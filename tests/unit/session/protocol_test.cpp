@@ -134,7 +134,7 @@ TEST(ProtocolTest, BadConditionsAreRefusedAndNamed) {
 TEST(ProtocolTest, ABadDurationIsRefused) {
   for (const double seconds : {-1.0, 0.0, 4.9, 3601.0, std::numeric_limits<double>::infinity(),
                                std::numeric_limits<double>::quiet_NaN()}) {
-    for (double ProtocolOptions::* of : {&ProtocolOptions::trial_s, &ProtocolOptions::identify_s}) {
+    for (const auto of : {&ProtocolOptions::trial_s, &ProtocolOptions::identify_s}) {
       ProtocolOptions options = three_conditions(1);
       options.*of = seconds;
       EXPECT_THROW(plan(options), ConfigError) << seconds;

@@ -98,7 +98,8 @@ struct Wave {
 };
 
 // Half waves after eight of 0.3 floors, and three of those behind them.  The band-pass changes an
-// amplitude by 0.07 floors and a length by 3 ticks, far less than they are from the bounds.
+// amplitude next to a larger jump by up to 0.24 floors and a length by up to 5 ticks; no half wave
+// of the cases passes a bound by that.
 // @return the tick of the finding, -1: none
 Tick found_in(GrowingOscillation& sut, std::vector<Wave> waves) {
   waves.insert(waves.begin(), 8, Wave{0.3});

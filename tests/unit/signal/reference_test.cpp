@@ -23,9 +23,9 @@ TEST(ReferenceDesignTest, IsThePapersAtThreeMinutes) {
   EXPECT_DOUBLE_EQ(sut.amplitudes[14], 0.75 * std::exp(-1.96));
 }
 
-// Eq. SG-14 by hand: m/18, m/9 and m/3 where there is room; the lowest fall together.  The primes
-// of 60 s are those next to m/3 above the one before, of 29 and 31, and of 239 and 241, the
-// smaller.
+// Eq. SG-14 by hand: the multiples of 180 s times T/180 s, each at least one above the one before.
+// Coprime: the nearest prime above the one before; of two equally near the smaller (29 for 30, 239
+// for 240).
 TEST(ReferenceDesignTest, ShorterTrialsHaveTheHarmonicsOfTheEquation) {
   using Harmonics = std::array<std::int64_t, kReferenceLines>;
   EXPECT_EQ(reference_design(10.0).harmonics,
