@@ -20,7 +20,7 @@ namespace stillhand::diagnosis::baseline_test {
 using made::signals_of;
 using made::sum_of;
 
-constexpr std::size_t kCount = 12000;
+constexpr std::size_t kCount = 12001;
 
 // First-order low-pass noise, correlation time 0.1 s.
 std::vector<double> coloured(std::size_t count, std::uint64_t seed, double rms) {
@@ -84,6 +84,23 @@ TEST(BaselineTest, AStartIsIteratedUntilMostOfTheBiasIsGone) {
   const auto noisy = sum_of(y, coloured(kCount, 11, rms));
   const Body sut = started_body({u}, noisy, {}, signals_of(u, noisy), 4);
   EXPECT_LT(response_error(sut, truth), 0.1);
+}
+
+// Twelve frequencies from 0.7 of the band's lower end to 0.3 of the rate, dampings of 0.1 and 0.35:
+// where one of them is true, it leaves nothing.
+TEST(BaselineTest, AModeIsFoundWhereItIsTried) {
+  const auto u = made::ride(2001, 1);
+  const std::vector<double> kept = made::mode(5.0, 0.2);
+  const double lowest_hz = 0.7 * signals_of(u, u).lowest_excited_hz();
+  for (const auto& [step, damping] : {std::pair{0, 0.1}, {4, 0.35}, {7, 0.1}, {11, 0.35}}) {
+    const double at_hz = lowest_hz * std::pow(30.0 / lowest_hz, step / 11.0);
+    const Body truth{{{0.1, 0.2, -0.1, 0.3, 0.0}}, made::times(kept, made::mode(at_hz, damping))};
+    const auto y = made::answer(truth, u);
+    const Body sut = with_mode(made::two_pole_body(), kept, {u}, y, signals_of(u, y));
+    for (std::size_t j = 0; j <= 4; ++j) {
+      EXPECT_NEAR(sut.denominator[j], truth.denominator[j], 1e-9) << at_hz;
+    }
+  }
 }
 
 TEST(BaselineTest, GapsAndFilledSamplesAreNoObstacle) {

@@ -12,7 +12,7 @@ namespace stillhand::diagnosis::effect_kinds_test {
 
 using testing::IsSupersetOf;
 
-constexpr std::size_t kCount = 6000;
+constexpr std::size_t kCount = 6001;
 
 // What a script may expect in the field `kind` of the verdict.
 TEST(EffectKindsTest, EveryKindOfTheContractIsThere) {

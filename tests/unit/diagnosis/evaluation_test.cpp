@@ -20,7 +20,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::Pointwise;
 
-constexpr std::size_t kCount = 2000;
+constexpr std::size_t kCount = 2001;
 constexpr std::size_t kCut = 1200;
 
 Signals signals_of(const std::vector<double>& u, const std::vector<double>& y) {

@@ -13,7 +13,7 @@
 
 namespace stillhand::diagnosis::fit_test {
 
-constexpr std::size_t kCount = 3000;
+constexpr std::size_t kCount = 2999;
 
 Signals signals_of(const std::vector<double>& y) {
   const std::size_t count = y.size();

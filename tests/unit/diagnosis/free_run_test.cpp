@@ -17,7 +17,7 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Pointwise;
 
-constexpr std::size_t kCount = 120;
+constexpr std::size_t kCount = 121;
 constexpr std::size_t kCut = 70;
 constexpr double kPause_s = 3.0;
 // Sums of a few terms near 1, 70 samples of a body that forgets within 30: 1e-16 times a few

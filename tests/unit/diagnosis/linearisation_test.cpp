@@ -10,7 +10,7 @@
 // linearised() against central differences of free_run(), with every kind of stage in the model.
 namespace stillhand::diagnosis::linearisation_test {
 
-constexpr std::size_t kCount = 600;
+constexpr std::size_t kCount = 601;
 
 Signals signals_of() {
   Measurement measurement = made::measurement_of({{"u", "V", made::ride(kCount, 1)},
@@ -85,22 +85,6 @@ TEST(LinearisationTest, AStaticBodyHasItsInputsAsColumns) {
   model.body.numerators = {{2.0}, {0.5}};
   model.body.denominator = {1.0};
   expect_columns_agree(model, signals_of());
-}
-
-TEST(LinearisationTest, RandomBodiesAgreeToo) {
-  signal::Gaussian draw(7, 0);
-  const Signals signals = signals_of();
-  for (int i = 0; i < 5; ++i) {
-    SCOPED_TRACE(i);
-    Model model = model_with({});
-    model.body.denominator =
-        made::times(made::mode(1.5 + 6.0 * draw.uniform(), 0.1 + draw.uniform() / 2.0),
-                    made::mode(8.0 + 12.0 * draw.uniform(), 0.2));
-    for (auto& numerator : model.body.numerators) {
-      for (double& b : numerator) b = draw();
-    }
-    expect_columns_agree(model, signals);
-  }
 }
 
 TEST(LinearisationTest, EveryStageAgrees) {

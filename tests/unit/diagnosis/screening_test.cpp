@@ -9,7 +9,7 @@
 
 namespace stillhand::diagnosis::screening_test {
 
-constexpr std::size_t kCount = 6000;
+constexpr std::size_t kCount = 6001;
 constexpr double kNoise = 0.05;
 
 // 0.09 of 0.09 + 0.0025 is the channel's, less what the body's own numbers had taken of it; the

@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::Pointwise;
 using testing::SizeIs;
 
-constexpr std::size_t kCount = 1000;
+constexpr std::size_t kCount = 1001;
 
 // u and v swing once between -1 and 1 in `scale`, v about 20.
 Signals signals_of(double scale) {

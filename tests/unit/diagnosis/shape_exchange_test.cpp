@@ -12,7 +12,7 @@
 
 namespace stillhand::diagnosis::shape_exchange_test {
 
-constexpr std::size_t kCount = 3000;
+constexpr std::size_t kCount = 3001;
 
 class ShapeExchangeTest : public ::testing::Test {
  protected:

@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
 
-constexpr std::size_t kCount = 3000;
+constexpr std::size_t kCount = 3001;
 
 // amplitude sin(2 pi f t + phase), its first or second derivative.
 std::vector<double> sine(double frequency_hz, int derivative = 0, double phase_rad = 0.4) {
@@ -184,7 +184,7 @@ TEST(SignalsTest, TheStartOfAStretchIsNotJudged) {
     const bool judged = n >= 100 && n != 1500 && !(n >= 2600 && n < 2640);
     ASSERT_EQ(sut.weight()[n], judged ? 1.0 : 0.0) << n;
   }
-  EXPECT_DOUBLE_EQ(sut.duration_s(), 29.99 + 5.0);
+  EXPECT_DOUBLE_EQ(sut.duration_s(), 30.0 + 5.0);
 }
 
 TEST(SignalsTest, ARestartBeginsAStretchThatIsNotJudgedAtFirst) {
@@ -264,7 +264,7 @@ TEST(SignalsTest, AMeasurementThatIsNoneIsRefusedBeforeItIsRead) {
   Measurement measurement =
       made::measurement_of({{"u", "V", made::ride(kCount, 1)}, {"y", "N", made::ride(kCount, 2)}});
   measurement.stretches[0].end = 2 * kCount;
-  EXPECT_THAT(error_of(measurement, {"u"}, "y"), HasSubstr("stretches of 6000 samples"));
+  EXPECT_THAT(error_of(measurement, {"u"}, "y"), HasSubstr("stretches of 6002 samples"));
 }
 
 }  // namespace stillhand::diagnosis::signals_test

@@ -15,7 +15,7 @@
 
 namespace stillhand::diagnosis::stability_test {
 
-constexpr std::size_t kCount = 3000;
+constexpr std::size_t kCount = 3001;
 
 Signals signals_of(double scale = 1.0) {
   std::vector<double> u = made::ride(kCount, 1);

@@ -18,7 +18,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::Pointwise;
 
-constexpr std::size_t kCount = 2000;
+constexpr std::size_t kCount = 2001;
 constexpr std::size_t kCut = 1200;
 
 // A temperature of 23 degrees, a vertical acceleration with gravity in it, and a ride.
