@@ -275,26 +275,6 @@ TEST(FreeFormTest, TheEvidenceGivesTheCurve) {
             "2 rad");
 }
 
-// Level, slope and size are not the curve's: the outer heights are held, and the one that is
-// furthest from the straight line between them.
-TEST(FreeFormTest, ACurveInsideBeginsAsTheLawInWhosePlaceItIs) {
-  const std::vector<double> z = made::white(2000, 8);
-  std::vector<double> phi = z;
-  for (double& each : phi) each = std::abs(each);
-  const std::vector<double> weight(z.size(), 1.0);
-  const auto sut = effect_kind("free_form").drawn_after(z, phi, weight);
-  ASSERT_TRUE(sut);
-  EXPECT_EQ(effect_kind("free_form").stage(*sut), Stage::kFeedback);
-  EXPECT_EQ(complexity(*sut), sut->parameters.size() / 2 - 3);
-  const Nonlinearity law = effect_kind("free_form").feedback(*sut);
-  LoopMemory memory;
-  for (const double at : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
-    EXPECT_NEAR(law.phi(at, memory), std::abs(at), 0.15) << at;  // the bend is rounded off
-  }
-  EXPECT_NEAR(law.phi(8.0, memory) - law.phi(7.0, memory), 1.0, 0.2);  // straight on
-  EXPECT_NEAR(law.phi(0.0, memory), 0.0, 1e-12);                       // no force at rest
-}
-
 // Without a bend nothing but its ends can be held: a height between them would be rounding's
 // choice.
 TEST(FreeFormTest, AStraightCurveHoldsItsEndsAlone) {
@@ -313,6 +293,57 @@ TEST(FreeFormTest, TheLastKnotIsTheLargestArgumentWhateverRoundingSays) {
   const auto sut = effect_kind("free_form").drawn_after(z, z, std::vector<double>(z.size(), 1.0));
   ASSERT_TRUE(sut);
   EXPECT_EQ(sut->parameters[sut->parameters.size() / 2 - 1].value, z.back());
+}
+
+// Fifteen knots at even steps where arguments are even; straight ends and the bend at 0 are held,
+// the others may move by five times the range of 1.
+TEST(FreeFormTest, ACurveHasFifteenKnotsAndHoldsThree) {
+  constexpr std::size_t kArguments = 1401;
+  std::vector<double> z(kArguments);
+  std::vector<double> phi(kArguments);
+  for (std::size_t n = 0; n < kArguments; ++n) {
+    z[n] = (static_cast<double>(n) - 700.0) / 700.0;
+    phi[n] = std::abs(z[n]);
+  }
+  const EffectKind& kind = effect_kind("free_form");
+  const auto sut = kind.drawn_after(z, phi, std::vector<double>(kArguments, 1.0));
+  ASSERT_TRUE(sut);
+  ASSERT_EQ(sut->parameters.size(), 30u);
+  for (std::size_t k = 0; k < 15; ++k) {
+    const Parameter& height = sut->parameters[15 + k];
+    EXPECT_NEAR(sut->value(k), (static_cast<double>(k) - 7.0) / 7.0, 2e-3) << "one sample";
+    EXPECT_EQ(height.value, std::abs(sut->value(k)));
+    const bool held = k == 0 || k == 7 || k == 14;
+    EXPECT_NEAR(height.upper - height.value, held ? 0.0 : 5.0, 1e-12) << k;
+    EXPECT_NEAR(height.value - height.lower, held ? 0.0 : 5.0, 1e-12) << k;
+  }
+  // Fourteen that weigh are too few for fifteen knots.
+  z.resize(15);
+  std::vector<double> weight(15, 1.0);
+  EXPECT_TRUE(kind.drawn_after(z, z, weight));
+  weight[3] = 0.0;
+  EXPECT_FALSE(kind.drawn_after(z, z, weight));
+}
+
+// The slope at a knot is that of the parabola through it and its neighbours, so a parabola is its
+// own smooth curve, between knots wherever they are; beyond them its tangents, of -6 and 4.
+TEST(FreeFormTest, ASmoothCurveThroughAParabolaIsTheParabola) {
+  Effect sut{"free_form", "curve of the input", {"u"}, {}, {}};
+  const auto parabola = [](double x) { return (x - 1.0) * (x - 1.0); };
+  const double knots[] = {-2.0, -1.0, 0.5, 3.0};
+  for (const double x : knots) sut.parameters.push_back(constant("knot_", "V", x));
+  for (const double x : knots) sut.parameters.push_back(constant("height_", "V", parabola(x)));
+  Effect inside = sut;
+  inside.form = "curve inside the body";
+  const EffectKind& kind = effect_kind("free_form");
+  const Nonlinearity law = kind.feedback(inside);
+  LoopMemory memory;
+  EXPECT_EQ(law.threshold, 1.0);
+  for (const double x : {-3.0, -2.0, -1.7, -1.0, -0.3, 0.0, 0.5, 1.2, 2.9, 3.0, 4.0}) {
+    const double want = x < -2.0 ? 15.0 : (x > 3.0 ? 8.0 : parabola(x));
+    EXPECT_NEAR(kind.mapped(sut, x), want, 1e-14 * 15.0) << x;
+    EXPECT_NEAR(law.phi(x, memory), want - 1.0, 1e-14 * 15.0) << x << ": none at rest";
+  }
 }
 
 TEST(FreeFormTest, AForceWithMemoryIsNoCurve) {
