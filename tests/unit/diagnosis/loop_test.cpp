@@ -9,7 +9,7 @@
 
 namespace stillhand::diagnosis::loop_test {
 
-constexpr std::size_t kCount = 3000;
+constexpr std::size_t kCount = 3001;
 
 // A y = B u + q^-1 e_0 phi(y / threshold)
 Model looped(const char* kind, const char* form, double threshold, double e0) {
@@ -91,6 +91,34 @@ TEST(LoopTest, AStretchMayBeginAtTheStop) {
                      {{"output_saturation", "stop above", {}, {constant("limit", "N", 1.5)}, {}}}),
       signals);
   for (std::size_t n = 0; n < kCount; ++n) ASSERT_NEAR(run.prediction[n], 1.5, 1e-9) << n;
+}
+
+// Springs within their straight part: at rest z = N u / (A - M), and y = (B u + w + E z) / (A - the
+// springs' own stiffnesses).  A(1) = 0.2, B(1) = 0.12 and 0.2; -2/50, 1.2/40; N = 0.02, M = 0.04, E
+// = 0.1.
+TEST(LoopTest, SpringsRestWhereTheirForcesAgreeInEveryStretch) {
+  Model model = made::model_of(
+      {{{0.0, 0.1, 0.02}, {0.3, -0.1, 0.0}}, {1.0, -1.2, 0.4}},
+      {{"dead_zone", "play inside the body", {}, {}, {0.1, 0.3, 0.0, 0.02, 0.1, 0.0, 0.04, 0.2}},
+       {"dead_zone", "play of the output", {}, {constant("threshold", "N", 50.0)}, {-2.0, 0.7}},
+       {"dead_zone", "play of the output", {}, {constant("threshold", "N", 40.0)}, {1.2, 0.0}}});
+  model.inputs = {"u", "w"};
+  std::vector<double> u(kCount, 3.0);
+  std::vector<double> w(kCount, 1.0);
+  std::fill(u.begin() + 1000, u.end(), -1.0);
+  std::fill(w.begin() + 1000, w.end(), 2.0);
+  const Measurement measurement = made::cut_in_two(
+      made::measurement_of({{"u", "V", u}, {"w", "V", w}, {"y", "N", made::white(kCount, 2)}}),
+      1000, 5.0);
+  const FreeRun sut = free_run(model, Signals(measurement, {"u", "w"}, "y"));
+  ASSERT_TRUE(sut.finite);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    const double z = 0.02 * u[n] / (0.2 - 0.04);
+    const double y = (0.12 * u[n] + 0.2 * w[n] + 0.1 * z) / (0.2 + 2.0 / 50.0 - 1.2 / 40.0);
+    ASSERT_NEAR(sut.body[n], y, 1e-9) << n;
+    ASSERT_NEAR(sut.argument[n], z, 1e-9) << n << ": of the first";
+    ASSERT_NEAR(sut.phi[n], z, 1e-9) << n;
+  }
 }
 
 // A start for a fit: where a body has other poles, an effect keeps as many differences as it can.
