@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "services/core/diagnosis/diagnose.hpp"
 #include "tests/planted/recording.hpp"
 #include "tests/planted/to_measurement.hpp"
@@ -63,6 +65,19 @@ TEST(NoiseModelTest, TheOrderIsBoundedByTheSamples) {
   EXPECT_EQ(order_of(290, 2), 2u);
   EXPECT_EQ(order_of(kSamples, 24), 24u);
   EXPECT_LT(order_of(kSamples, 30), 24u) << "what is further back is not seen";
+}
+
+// One number: 1 - rho q^-1 over sqrt(1 - rho^2), rho the correlation of neighbours next to a white
+// share of 1 %.
+TEST(NoiseModelTest, TheFilterOfOneNumberIsTheCorrelationOfNeighbours) {
+  std::vector<double> x = white(191, 6);
+  for (std::size_t n = 1; n < x.size(); ++n) x[n] -= 0.8 * x[n - 1];
+  const Eigen::VectorXd r = made::column_of(x);
+  const double rho = neighbours(r) / 1.01;
+  const std::vector<double> sut = noise_taps(r, some_signals(x.size()));
+  ASSERT_EQ(sut.size(), 2u);
+  EXPECT_NEAR(sut[0], 1.0 / std::sqrt(1.0 - rho * rho), 1e-12);
+  EXPECT_NEAR(sut[1], -rho / std::sqrt(1.0 - rho * rho), 1e-12);
 }
 
 TEST(NoiseModelTest, WhatPassesTheFilterIsWhiteAndAsLarge) {

@@ -1,75 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
-// Standard errors against what repeated experiments scatter, and what no record determines.
+// Standard errors in their closed form, and what no record determines; planted_sizes_test.cpp has
+// what repeated experiments scatter.
 #include "services/core/diagnosis/fitting/number_errors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
+#include <vector>
 
 #include "services/core/diagnosis/fitting/fit.hpp"
+#include "services/core/diagnosis/fitting/noise_model.hpp"
 #include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::diagnosis::number_errors_test {
 
 constexpr std::size_t kSamples = 4000;
 
-// r(n) = 0.8 r(n-1) + e(n): a third of its power below 1 Hz.
-std::vector<double> slow_noise(std::uint64_t seed) {
-  std::vector<double> r = made::white(kSamples, seed);
-  for (std::size_t n = 1; n < r.size(); ++n) r[n] += 0.8 * r[n - 1];
-  return r;
-}
-
-// y = 2 u + 0.5 theta + noise; theta lies below 1 Hz.
-struct Repeat {
-  explicit Repeat(std::uint64_t seed) {
-    Measurement measurement = made::every_channel(kSamples, 3);
-    std::vector<double>& y = measurement.channels.back().values;
-    const std::vector<double> noise = slow_noise(seed);
-    for (std::size_t n = 0; n < y.size(); ++n) {
-      y[n] = 2.0 * measurement.channels[0].values[n] + 0.5 * measurement.find("theta")->values[n] +
-             0.3 * noise[n];
+// Under r(n) = 0.8 r(n-1) + e(n), X the weighted columns of offset, u and theta: Eq. DG-70 with the
+// taps C of the noise model, each stretch by itself, X'X^-1 X' C^-1 C^-T X X'X^-1 times what is
+// left.
+TEST(NumberErrorsTest, TheyAreThoseOfTheNoisesCovariance) {
+  constexpr std::size_t kRows = 401;
+  Measurement measurement = made::every_channel(kRows, 3);
+  const auto noise = made::answer({1.0}, {1.0, -0.8}, made::white(kRows, 7));
+  measurement.channels.back().values = made::mix({{2.0, measurement.channels[0].values},
+                                                  {0.5, measurement.find("theta")->values},
+                                                  {0.3, noise}});
+  const Signals signals(made::cut_in_two(measurement, 180, 5.0), {"u"}, "y");
+  Model model =
+      made::model_of({{{1.0}}, {1.0}, 0.0}, {{"coupled_input", "static", {"theta"}, {}, {0.1}}});
+  fit(model, signals, make_blocks(signals));
+  const Linearisation line = linearised(model, signals);
+  const NumberErrors sut(model, line, signals);
+  const std::vector<double> taps = noise_taps(line.residual, signals);
+  ASSERT_GT(taps.size(), 1u);
+  Eigen::MatrixXd x(kRows, 3);
+  x << made::column_of(std::vector<double>(kRows, 1.0)), made::column_of(signals.at("u").values),
+      made::column_of(signals.at("theta").values);
+  const Eigen::VectorXd weight = made::column_of(signals.weight());
+  x.array().colwise() *= weight.array();
+  Eigen::MatrixXd filter = Eigen::MatrixXd::Zero(kRows, kRows);
+  for (Eigen::Index n = 0; n < filter.rows(); ++n) {
+    for (Eigen::Index k = 0; k < std::ssize(taps) && k <= (n < 180 ? n : n - 180); ++k) {
+      filter(n, n - k) = taps[static_cast<std::size_t>(k)];
     }
-    const Signals signals(measurement, {"u"}, "y");
-    model =
-        made::model_of({{{1.0}}, {1.0}, 0.0}, {{"coupled_input", "static", {"theta"}, {}, {0.1}}});
-    fit(model, signals, make_blocks(signals));
-    const NumberErrors errors(model, linearised(model, signals), signals);
-    gain_error = errors.of_number(2);
-    // gain over factor: a function of two numbers.
-    ratio = ratio_of(model);
-    ratio_error =
-        errors.of([](const Model& each) { return std::vector<double>{ratio_of(each)}; }).front();
   }
-  static double ratio_of(const Model& model) {
-    return model.effects[0].coefficients[0] / model.body.numerators[0][0];
+  const Eigen::MatrixXd spread = filter.transpose().triangularView<Eigen::Upper>().solve(
+      Eigen::MatrixXd(x * (x.transpose() * x).inverse()));
+  const Eigen::MatrixXd want =
+      line.residual.squaredNorm() / (weight.sum() - 3.0) * (spread.transpose() * spread);
+  for (const Eigen::Index i : {0, 1, 2}) {
+    EXPECT_NEAR(sut.of_number(static_cast<std::size_t>(i)) / std::sqrt(want(i, i)), 1.0, 1e-6);
   }
-
-  Model model;
-  double gain_error = 0.0;
-  double ratio = 0.0;
-  double ratio_error = 0.0;
-};
-
-// 60 repeats: a scatter has a standard error of 1/sqrt(120) = 9 %; three of them, and 5 % for the
-// noise model's own errors.  In white noise of this power theta's gain would scatter by a third of
-// it: the autocorrelation 0.8^k adds up to 9.
-TEST(NumberErrorsTest, TheyAreWhatRepeatedExperimentsScatterUnderSlowNoise) {
-  constexpr int kRepeats = 60;
-  double square = 0.0;
-  double ratio_square = 0.0;
-  double error = 0.0;
-  double ratio_error = 0.0;
-  for (std::uint64_t seed = 1; seed <= kRepeats; ++seed) {
-    const Repeat sut(100 + seed);
-    square += std::pow(sut.model.effects[0].coefficients[0] - 0.5, 2) / kRepeats;
-    ratio_square += std::pow(sut.ratio - 0.25, 2) / kRepeats;
-    error += sut.gain_error / kRepeats;
-    ratio_error += sut.ratio_error / kRepeats;
-  }
-  EXPECT_NEAR(error / std::sqrt(square), 1.0, 0.32);
-  EXPECT_NEAR(ratio_error / std::sqrt(ratio_square), 1.0, 0.32);
+  // Gain over factor: a function of two numbers, by its gradient.
+  const double factor = model.body.numerators[0][0];
+  const double gain = model.effects[0].coefficients[0];
+  const Eigen::Vector3d gradient(0.0, -gain / (factor * factor), 1.0 / factor);
+  const double ratio_error =
+      sut.of([](const Model& each) {
+           return std::vector<double>{each.effects[0].coefficients[0] / each.body.numerators[0][0]};
+         })
+          .front();
+  EXPECT_NEAR(ratio_error / std::sqrt(gradient.dot(want * gradient)), 1.0, 1e-5);
 }
 
 // c z^3 with z from any numerator N: a larger N and a smaller c are the same model.
