@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
+#include <span>
+#include <utility>
 
 #include "services/core/diagnosis/diagnose.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
@@ -67,6 +70,56 @@ TEST(RestAtALimitTest, ASensorThatEndsIsNoStop) {
   ASSERT_EQ(sut.effects.size(), 1u);
   EXPECT_EQ(sut.effects[0].effect.kind, "output_saturation");
   EXPECT_FALSE(sut.effects[0].effect.form.starts_with("stop")) << sut.effects[0].effect.form;
+}
+
+struct Rest {
+  std::size_t rows;       // at the end of the range
+  std::size_t elsewhere;  // at another level
+  std::size_t next;       // with the value that is next to the end
+  bool moves;             // the body's answer meanwhile: as much as it can, or as little
+  int proposed;           // a stop and a clip
+};
+
+// How many are proposed where the answer of a body of 4 s rests; sign: above, below.
+auto proposed_at(const Rest& rest, double sign) {
+  const auto u = made::ride(401, 1);
+  std::vector<double> y = made::answer(made::two_pole_body(), u);
+  const double end = 5.0 * sign * made::rms_of(y);
+  const auto move = [&](const std::ptrdiff_t n) {
+    const auto part = std::span(y).subspan(static_cast<std::size_t>(n), rest.rows);
+    return (rest.moves ? 1.0 : -1.0) * (std::ranges::max(part) - std::ranges::min(part));
+  };
+  const auto places = std::views::iota(std::ptrdiff_t{200}, std::ptrdiff_t{300});
+  std::fill_n(y.begin() + *std::ranges::max_element(places, {}, move), rest.rows, end);
+  std::fill_n(y.begin() + 320, rest.elsewhere, y[320]);
+  for (std::size_t i = 0; i < rest.next; ++i) y[100 + 20 * i] = 0.99 * end;
+  const Signals signals = made::signals_of(u, y);
+  // With another effect in the model no body is estimated again.
+  const Model model = made::model_of(made::two_pole_body(), {{"drift", "linear", {}, {}, {0.0}}});
+  const Blocks blocks = make_blocks(signals);
+  const ImpulseResponse none;
+  const EffectKind& kind = effect_kind("output_saturation");
+  const auto all = kind.proposed(Screening(model, signals, blocks, none));
+  return std::ranges::count_if(all, [&](const Proposal& sut) {
+    return kind.shows_in_rows(sut.effect) && sut.effect.value(0) == end;
+  });
+}
+
+// Five rows at least, twice as many as rest elsewhere, four times as many as have the next value,
+// where the model without a stop moves.
+TEST(RestAtALimitTest, ARestIsLongerThanAnyOther) {
+  for (const Rest& rest : {Rest{4, 1, 1, true, 0},
+                           {5, 1, 1, true, 2},
+                           {5, 3, 1, true, 0},
+                           {6, 3, 1, true, 2},
+                           {7, 1, 2, true, 0},
+                           {8, 1, 2, true, 2},
+                           {8, 1, 2, false, 0}}) {
+    for (const double sign : {1.0, -1.0}) {
+      EXPECT_EQ(proposed_at(rest, sign), rest.proposed)
+          << sign << ", " << rest.rows << ", " << rest.elsewhere << ", " << rest.next;
+    }
+  }
 }
 
 // It rests at its end because the input does.
