@@ -20,7 +20,7 @@ double held_rows(const std::vector<double>& values, const std::vector<Place>& ru
   constexpr double kLeastEven = 0.95;
   constexpr double kLeastSteps = 3.0;  // of the smallest: single ones are those of a resolution
   constexpr double kLeastError = 0.01;
-  if (runs.size() < kFewestRuns || values.size() < 3 * runs.size() / 2) return 0.0;
+  if (runs.size() < kFewestRuns) return 0.0;
   const double mean = static_cast<double>(values.size()) / static_cast<double>(runs.size());
   if (mean > kLongest_s * rate_hz) return 0.0;
   std::size_t even = 0;

@@ -20,7 +20,6 @@ constexpr double kSlowest_hz = 8.0;   // what beats more slowly is a signal
 
 // First or second differences of the first rows, a power of two of them.
 std::vector<double> differences_of(const std::vector<double>& x, int order) {
-  if (x.size() < 4) return {};
   std::size_t rows = 1;
   while (2 * rows + 2 <= std::min(x.size(), kMostRows + 2)) rows *= 2;
   std::vector<double> out;

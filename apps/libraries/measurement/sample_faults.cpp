@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/libraries/measurement/sample_rests.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -26,36 +27,24 @@ bool is_rail(double value) {
 
 // The lowest and the highest value, how often each comes, and the values next to them.
 struct Ends {
-  double low = 0.0, above_low = 0.0, below_high = 0.0, high = 0.0;
+  double low, above_low, below_high, high;
   std::size_t lows = 0, highs = 0;
 };
 
-Ends ends_of(const std::vector<double>& values, const std::vector<char>& is_bad) {
-  Ends out;
-  bool first = true;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double value = values[i];
-    if (is_bad[i] != 0) continue;
-    if (first) {
-      out = {value, value, value, value, 0, 0};
-      first = false;
+Ends ends_of(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax(values);
+  Ends out{low, high, low, high};
+  for (const double value : values) {
+    if (value == low) {
+      ++out.lows;
+    } else {
+      out.above_low = std::min(out.above_low, value);
     }
-    if (value < out.low) {
-      out.above_low = out.low;
-      out.low = value;
-      out.lows = 0;
-    } else if (value > out.low && (value < out.above_low || out.above_low == out.low)) {
-      out.above_low = value;
+    if (value == high) {
+      ++out.highs;
+    } else {
+      out.below_high = std::max(out.below_high, value);
     }
-    if (value > out.high) {
-      out.below_high = out.high;
-      out.high = value;
-      out.highs = 0;
-    } else if (value < out.high && (value > out.below_high || out.below_high == out.high)) {
-      out.below_high = value;
-    }
-    out.lows += value == out.low ? 1u : 0u;
-    out.highs += value == out.high ? 1u : 0u;
   }
   return out;
 }
@@ -68,23 +57,10 @@ double over_gap(double second, double first, double over, double beyond, double 
          2.0 * over / (h + 2.0) - 2.0 * beyond * h / ((h + 3.0) * (h + 2.0));
 }
 
-// Some rows between the ends show already that neither end is farther than they lie apart.
-bool ends_are_near(const std::vector<double>& values) {
-  constexpr std::size_t kRows = 1000;
-  double low = values[0];
-  double high = values[0];
-  for (const double value : values) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  double inner_low = high;
-  double inner_high = low;
-  for (std::size_t i = 0; i < values.size(); i += values.size() / kRows + 1) {
-    if (values[i] > low) inner_low = std::min(inner_low, values[i]);
-    if (values[i] < high) inner_high = std::max(inner_high, values[i]);
-  }
-  const double inner = inner_high - inner_low;
-  return high - inner_high <= inner && inner_low - low <= inner;
+// To the last place, or as a new one behind it.
+void add_row(std::vector<Place>& places, std::size_t row) {
+  if (places.empty() || places.back().end != row) places.push_back({row, row});
+  places.back().end = row + 1;
 }
 
 // Of all rows but the places, the range of 99.5 %: a few spikes next to each other are no places.
@@ -110,32 +86,24 @@ double step_to(const std::vector<double>& values, std::size_t row) {
   return std::abs(values[row] - values[row - 1]);
 }
 
-// Median size of the steps between unequal rows.
 double usual_step(const std::vector<double>& values, const std::vector<Place>& runs) {
   return middle_over_rows(1, runs.size(),
                           [&](std::size_t r) { return step_to(values, runs[r].first); });
 }
 
 double deviation_of(const std::vector<double>& values) {
-  double mean = 0.0;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double from = values[i] - mean;
-    mean += from / static_cast<double>(i + 1);
-    squares += from * (values[i] - mean);
-  }
-  return std::sqrt(squares / static_cast<double>(values.size()));
+  return std::sqrt(signal::variance(values));
 }
 
-// A source that beats, as footfalls do, and no disturbance of a wire.
 bool beat(const std::vector<Place>& places) {
   constexpr std::size_t kFewest = 5;
   if (places.size() < kFewest) return false;
-  std::size_t least = places[1].first - places[0].first;
-  std::size_t most = least;
-  for (std::size_t i = 2; i < places.size(); ++i) {
-    least = std::min(least, places[i].first - places[i - 1].first);
-    most = std::max(most, places[i].first - places[i - 1].first);
+  std::size_t least = places.back().first;
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const std::size_t rows = places[i].first - places[i - 1].first;
+    least = std::min(least, rows);
+    most = std::max(most, rows);
   }
   return 2 * least >= most;
 }
@@ -169,12 +137,7 @@ bool has_many_levels(const std::vector<double>& values) {
   constexpr std::size_t kFewLevels = 16;
   std::vector<double> levels;
   for (const double value : values) {
-    if (!levels.empty() && value == levels.back()) continue;
-    const auto at = std::ranges::find(levels, value);
-    if (at != levels.end()) {
-      std::iter_swap(at, levels.end() - 1);
-      continue;
-    }
+    if (std::ranges::find(levels, value) != levels.end()) continue;
     levels.push_back(value);
     if (levels.size() > kFewLevels) return true;
   }
@@ -185,35 +148,24 @@ std::vector<BadRows> far_values(const std::vector<double>& values) {
   // A file has one fill value and a rail at either end; a few more do no harm.
   constexpr std::size_t kMostFar = 8;
   std::vector<BadRows> out;
-  if (ends_are_near(values)) return out;
-  std::vector<char> is_bad(values.size(), 0);
+  std::vector<double> left = values;
   while (out.size() < kMostFar) {
-    const Ends ends = ends_of(values, is_bad);
+    const Ends ends = ends_of(left);
     const double inner = ends.below_high - ends.above_low;
     const std::size_t most = values.size() / 2;
     const bool of_high =
-        ends.highs >= 2 && ends.highs <= most && ends.high - ends.below_high > std::max(inner, 0.0);
-    const bool of_low =
-        ends.lows >= 2 && ends.lows <= most && ends.above_low - ends.low > std::max(inner, 0.0);
+        ends.highs >= 2 && ends.highs <= most && ends.high - ends.below_high > inner;
+    const bool of_low = ends.lows >= 2 && ends.lows <= most && ends.above_low - ends.low > inner;
     if (!of_high && !of_low) break;
     const double far = of_high ? ends.high : ends.low;
     BadRows bad{is_rail(far) ? "rail" : "sentinel", {}, fmt::format("{:.9g}", far)};
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i] != far) continue;
-      is_bad[i] = 1;
-      if (bad.places.empty() || bad.places.back().end != i) bad.places.push_back({i, i});
-      bad.places.back().end = i + 1;
+      if (values[i] == far) add_row(bad.places, i);
     }
+    std::erase(left, far);
     out.push_back(std::move(bad));
   }
-  if (!out.empty()) {
-    std::vector<double> left;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (is_bad[i] == 0) left.push_back(values[i]);
-    }
-    if (!has_many_levels(left)) return {};
-  }
-  return out;
+  return has_many_levels(left) ? out : std::vector<BadRows>();
 }
 
 double above_neighbours(const std::vector<double>& x, std::size_t i) {
@@ -270,22 +222,15 @@ std::optional<BadRows> spikes_in(const std::vector<double>& values, double rate_
     return std::abs(values[place.first] - line) <= range;
   });
   const auto of_one = static_cast<std::size_t>(std::ranges::count_if(places, quiet));
-  if (places.empty() || beat(places) || 4 * of_one <= 3 * places.size()) return {};
+  if (beat(places) || 4 * of_one <= 3 * places.size()) return {};
   // Those next to each other are such too.
-  std::vector<Place> far;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool beyond = values[i] > high + range || values[i] < low - range;
-    if (beyond) far.push_back({i, i + 1});
-  }
-  places.insert(places.end(), far.begin(), far.end());
-  std::ranges::sort(places, {}, &Place::first);
   BadRows bad{"spikes", {}, {}};
-  for (const Place& place : places) {
-    if (bad.places.empty() || place.first > bad.places.back().end) {
-      bad.places.push_back(place);
-    } else {
-      bad.places.back().end = std::max(bad.places.back().end, place.end);
-    }
+  auto place = places.begin();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    while (place != places.end() && place->end <= i) ++place;
+    const bool inside = place != places.end() && i >= place->first;
+    const bool beyond = values[i] > high + range || values[i] < low - range;
+    if (inside || beyond) add_row(bad.places, i);
   }
   if (bad.rows() * kMostShare > values.size()) return {};
   return bad;
@@ -298,13 +243,13 @@ std::optional<BadRows> clipped_in(const std::vector<double>& values,
   // A sine of few digits has 1.3 times as many samples at its top level as at the next.
   constexpr std::ptrdiff_t kMoreThanNext = 4;
   if (runs.empty()) return {};
-  const Ends ends = ends_of(values, std::vector<char>(values.size(), 0));
+  const Ends ends = ends_of(values);
   BadRows bad{"clipped", {}, {}};
   for (const bool top : {false, true}) {
     const double end = top ? ends.high : ends.low;
     const double next = top ? ends.below_high : ends.above_low;
     const auto count = static_cast<std::ptrdiff_t>(top ? ends.highs : ends.lows);
-    if (end == 0.0 || count < 2 * kMoreThanNext) continue;  // what has one sign only rests at 0
+    if (end == 0.0) continue;  // what has one sign only rests at 0
     if (count < kMoreThanNext * std::ranges::count(values, next)) continue;
     std::vector<Place> at_end;
     std::size_t least = values.size();

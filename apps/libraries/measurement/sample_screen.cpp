@@ -279,16 +279,7 @@ class Screen {
         "straight lines of {}, which lose {:.2g} % at {:g} Hz; "
         "record it at its own rate",
         own_rate(rows), 100.0 * loss, kBand_hz);
-    if (much) {
-      add_whole(column, "held", says);
-    } else {
-      out_.faults.push_back({column.name,
-                             "held",
-                             {rows_.time_s.front()},
-                             1.0,
-                             column.name + ": " + says + ".",
-                             false});
-    }
+    much ? add_whole(column, "held", says) : note_whole(column, "held", says + ".", false);
     return much;
   }
 
@@ -303,13 +294,13 @@ class Screen {
   void add_whole(const Column& column, const std::string& what, const std::string& says) {
     const bool unsound = of_model(column);
     if (!unsound) out_.left_out.push_back(column.name);
+    note_whole(column, what, says + (unsound ? "." : "; the channel is left out."), unsound);
+  }
+
+  void note_whole(const Column& column, const std::string& what, const std::string& says,
+                  bool unsound) {
     out_.faults.push_back(
-        {column.name,
-         what,
-         {rows_.time_s.front()},
-         1.0,
-         column.name + ": " + says + (unsound ? "." : "; the channel is left out."),
-         unsound});
+        {column.name, what, {rows_.time_s.front()}, 1.0, column.name + ": " + says, unsound});
   }
 
   // A voltage may step, and a temperature is slow; what has a mass does neither.
