@@ -13,11 +13,9 @@ class Walk {
  public:
   explicit Walk(std::span<const double> places) : places_(places) {}
 
-  // Last row at or before the sample; samples come in order.  @return true when it moved
-  bool advance(double sample) {
-    const std::size_t before = row_;
+  // Last row at or before the sample; samples come in order.
+  void advance(double sample) {
     while (row_ + 1 < places_.size() && places_[row_ + 1] <= sample) ++row_;
-    return row_ != before;
   }
   [[nodiscard]] std::size_t row() const { return row_; }
   [[nodiscard]] bool on_row(double sample) const {
@@ -82,19 +80,15 @@ double interpolated(std::span<const double> places, std::span<const double> valu
 void append_on_grid(std::span<const double> places, std::span<const double> values,
                     std::size_t samples, std::vector<double>& out) {
   Walk walk(places);
-  Support support;
-  bool known = false;
   for (std::size_t n = 0; n < samples; ++n) {
     const auto sample = static_cast<double>(n);
-    if (walk.advance(sample)) known = false;
+    walk.advance(sample);
     const std::size_t row = walk.row();
     if (walk.on_row(sample)) {
       out.push_back(values[row]);
       continue;
     }
-    if (!known) support = support_of(places, row);
-    known = true;
-    out.push_back(interpolated(places, values, support, row, sample));
+    out.push_back(interpolated(places, values, support_of(places, row), row, sample));
   }
 }
 

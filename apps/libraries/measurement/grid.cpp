@@ -39,9 +39,8 @@ void leave_out_short(RowPlaces& places, std::vector<std::string>& notes) {
     longest = std::max(longest, stretch.grid_samples);
   }
   const double second = kLeastStretch_s * places.rate_hz;
-  const double least = static_cast<double>(longest) >= second
-                           ? std::max(second, static_cast<double>(kLeastStretch_samples))
-                           : static_cast<double>(kLeastStretch_samples);
+  const double least = std::max(static_cast<double>(kLeastStretch_samples),
+                                static_cast<double>(longest) >= second ? second : 0.0);
   std::size_t rows = 0;
   std::erase_if(places.stretches, [&](const RowStretch& stretch) {
     const bool is_short = static_cast<double>(stretch.grid_samples) < least;
@@ -108,21 +107,14 @@ void fill(Measurement& out, recording::Recording& rows, const RowPlaces& places)
     append_weights(of_stretch(places.places, stretch), stretch.grid_samples, out.weight);
     out.stretches.push_back({first, out.weight.size(), stretch.start_s});
   }
-  const bool as_it_is = !places.as_stamped && places.stretches.size() == 1 &&
-                        samples == rows.row_count() &&
-                        places.stretches.front().end_row == rows.row_count();
   for (recording::Column& column : rows.columns) {
     diagnosis::Channel channel{std::move(column.name), std::move(column.unit), {}};
-    if (as_it_is) {
-      channel.values = std::move(column.values);
-    } else {
-      channel.values.reserve(samples);
-      for (const RowStretch& stretch : places.stretches) {
-        append_on_grid(of_stretch(places.places, stretch), of_stretch(column.values, stretch),
-                       stretch.grid_samples, channel.values);
-      }
-      column.values = {};
+    channel.values.reserve(samples);
+    for (const RowStretch& stretch : places.stretches) {
+      append_on_grid(of_stretch(places.places, stretch), of_stretch(column.values, stretch),
+                     stretch.grid_samples, channel.values);
     }
+    column.values = {};
     out.channels.push_back(std::move(channel));
   }
 }
