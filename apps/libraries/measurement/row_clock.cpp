@@ -74,14 +74,6 @@ double tidy_rate_hz(double period_s, double resolution_s, const RowCount& count)
   return shift_periods <= std::max(kMostJitter_periods, error_periods) ? whole_hz : rate_hz;
 }
 
-void place_as_stamped(const std::vector<double>& time_s, RowPlaces& out) {
-  for (const RowStretch& stretch : out.stretches) {
-    for (std::size_t i = stretch.first_row; i < stretch.end_row; ++i) {
-      out.places[i] = (time_s[i] - stretch.start_s) * out.rate_hz;
-    }
-  }
-}
-
 }  // namespace
 
 RowPlaces place_rows(const recording::Recording& rows) {
@@ -106,8 +98,10 @@ RowPlaces place_rows(const recording::Recording& rows) {
   out.rate_hz = tidy_rate_hz(period_s, resolution, count);
   out.places = std::move(count.places);
   out.stretches = std::move(count.stretches);
-  if (out.as_stamped) place_as_stamped(time_s, out);
   for (RowStretch& stretch : out.stretches) {
+    for (std::size_t i = stretch.first_row; out.as_stamped && i < stretch.end_row; ++i) {
+      out.places[i] = (time_s[i] - stretch.start_s) * out.rate_hz;
+    }
     const double last = out.places[stretch.end_row - 1];
     // 1e-9: rounding may have put the last row before its sample.
     stretch.grid_samples = static_cast<std::size_t>(last + 1e-9) + 1;

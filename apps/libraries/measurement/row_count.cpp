@@ -13,66 +13,36 @@ constexpr double kBridged_s = 0.05;
 constexpr std::int64_t kLeastBridge_rows = 3;
 constexpr std::int64_t kMostBridge_rows = 1000;
 
-// Follows the clock's phase through the rows and counts the periods between them, Eq. ME-1.
-class Counter {
- public:
-  Counter(double period_s, std::int64_t longest_bridge)
-      : period_s_(period_s), longest_(static_cast<double>(longest_bridge)) {}
-
-  void begin(double time_s) {
-    start_s_ = time_s;
-    place_ = offset_ = 0.0;
-    rows_ = 1.0;
-  }
-  // Periods since the row before.  More than the longest bridge + 1 means a new stretch.
-  double step_to(double time_s) {
-    const double elapsed = (time_s - start_s_) / period_s_;
-    double step = std::round(elapsed - offset_ - place_);
-    if (step < 1.0) {  // counts as 0, so that a late row does not move all following rows
-      crowded_ = true;
-      step = 0.0;
-    }
-    if (step > longest_ + 1.0) return step;
-    place_ += step;
-    rows_ += 1.0;
-    // Follows a slowly drifting clock, but not a single late row.
-    constexpr double kGain = 0.01;
-    offset_ += std::max(kGain, 1.0 / rows_) * (elapsed - place_ - offset_);
-    return step;
-  }
-  [[nodiscard]] double place() const { return place_; }
-  // True if two rows shared a period.
-  [[nodiscard]] bool crowded() const { return crowded_; }
-
- private:
-  double period_s_;
-  double longest_;
-  double start_s_ = 0.0;
-  double place_ = 0.0;
-  double offset_ = 0.0;
-  double rows_ = 0.0;
-  bool crowded_ = false;
-};
-
-// Counts every row's place and cuts at the long gaps.
+// Follows the clock's phase through the rows, counts the periods between them, Eq. ME-1, and cuts
+// at the long gaps.
 void count_places(const std::vector<double>& time_s, double period_s, RowCount& out) {
-  const std::int64_t longest = longest_bridge(1.0 / period_s);
-  Counter counter(period_s, longest);
+  constexpr double kGain = 0.01;
+  const auto longest = static_cast<double>(longest_bridge(1.0 / period_s));
   out.places.assign(time_s.size(), 0.0);
   out.stretches = {{0, 0, time_s[0], 0}};
-  counter.begin(time_s[0]);
+  double place = 0.0, offset = 0.0, rows = 1.0;
   for (std::size_t i = 1; i < time_s.size(); ++i) {
-    const double step = counter.step_to(time_s[i]);
-    if (step > static_cast<double>(longest) + 1.0) {
+    const double elapsed = (time_s[i] - out.stretches.back().start_s) / period_s;
+    double step = std::round(elapsed - offset - place);
+    if (step < 1.0) {  // counts as 0, so that a late row does not move all following rows
+      out.crowded = true;
+      step = 0.0;
+    }
+    if (step > longest + 1.0) {
       out.stretches.back().end_row = i;
       out.stretches.push_back({i, 0, time_s[i], 0});
       out.lost_between += step - 1.0;
-      counter.begin(time_s[i]);
+      place = offset = 0.0;
+      rows = 1.0;
+      continue;
     }
-    out.places[i] = counter.place();
+    place += step;
+    rows += 1.0;
+    // Follows a slowly drifting clock, but not a single late row.
+    offset += std::max(kGain, 1.0 / rows) * (elapsed - place - offset);
+    out.places[i] = place;
   }
   out.stretches.back().end_row = time_s.size();
-  out.crowded = counter.crowded();
 }
 
 // Products and squares of one least-squares line through [first, end), added to the others.

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "apps/libraries/measurement/row_count.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/signal/random.hpp"
 
@@ -152,6 +153,37 @@ TEST(RowClockTest, TheLongestBridgeIsThreeRowsOrFiftyMilliseconds) {
   EXPECT_EQ(longest_bridge(100.0), 5);
   EXPECT_EQ(longest_bridge(1000.0), 50);
   EXPECT_EQ(longest_bridge(1e9), 1000);
+}
+
+TEST(RowCountTest, ARowIsCountedFromTheMeanLatenessOfTheRowsBefore) {
+  const auto last_place = [](const std::vector<double>& time_s) {
+    return count_rows(time_s, 1.0).places.back();
+  };
+  // Late by 0, 0.4 and 0.4: half a period more than their mean is 0.767.
+  EXPECT_EQ(last_place({0, 1.4, 2.4, 3.76}), 3.0);
+  EXPECT_EQ(last_place({0, 1.4, 2.4, 3.77}), 4.0);
+  // Behind 100 rows each one counts by a hundredth: 0.4 (1 - 0.99^50) + 0.5 = 0.658.
+  std::vector<double> time_s = printed(1.0, 101, 1.0);
+  for (int i = 101; i < 151; ++i) time_s.push_back(i + 0.4);
+  time_s.push_back(151.65);
+  EXPECT_EQ(last_place(time_s), 151.0);
+  time_s.back() = 151.67;
+  EXPECT_EQ(last_place(time_s), 152.0);
+  EXPECT_FALSE(count_rows({0, 1, 1.5, 3}, 1.0).crowded);
+  EXPECT_TRUE(count_rows({0, 1, 1.49, 3}, 1.0).crowded);
+}
+
+// The squares of five places about their mean sum up to 10; row 3 lies 1 from it.
+TEST(RowCountTest, ThePeriodIsTheSlopeOfAllStretchesWithAPhaseForEach) {
+  const RowCount sut = count_rows({0, 1, 2, 3.08, 4}, 1.0);
+  EXPECT_DOUBLE_EQ(sut.period_s, 1.008);
+  EXPECT_NEAR(sut.median_periods, 2.0 - 2.0 / 1.008, 1e-12);
+  EXPECT_NEAR(sut.range_periods, 1.0 - 0.92 / 1.008, 1e-12) << "from row 4 to row 3";
+  EXPECT_DOUBLE_EQ(count_rows({0, 1, 2, 3, 4, 99.5, 100.5, 101.5, 102.59, 103.5}, 1.0).period_s,
+                   1.0045);
+  EXPECT_TRUE(count_rows({0, 1, 2, 3.11, 4}, 1.0).lost) << "a hundredth from what was counted";
+  const std::vector<double> restarted{0, 1, 2, 3.09, 4, 6.5, 7.5, 8.5, 9.5, 10.5};
+  EXPECT_DOUBLE_EQ(period_between_gaps(restarted, count_rows(restarted, 1.0)), 1.0045);
 }
 
 // After a restart in the middle of a period the rows lie between the samples.
