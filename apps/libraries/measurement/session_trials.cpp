@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "idl/cdr.hpp"
 #include "idl/session.h"
@@ -158,10 +159,10 @@ bool answers_to(const SessionTrial& trial, const std::string& wanted) {
 
 // Identification before tracking, then by length.
 bool less_wanted(const SessionTrial& a, const SessionTrial& b) {
-  const bool a_pegged = a.trial.phase == TrialPhase::kPegged;
-  const bool b_pegged = b.trial.phase == TrialPhase::kPegged;
-  if (a_pegged != b_pegged) return b_pegged;
-  return a.recorded_ticks < b.recorded_ticks;
+  const auto rank = [](const SessionTrial& trial) {
+    return std::pair(trial.trial.phase == TrialPhase::kPegged, trial.recorded_ticks);
+  };
+  return rank(a) < rank(b);
 }
 
 }  // namespace
@@ -210,17 +211,13 @@ const SessionTrial& choose(const SessionTrials& trials, const std::string& wante
   }
   if (wanted.empty()) return *std::ranges::max_element(trials.trials, less_wanted);
   const auto answers = [&](const SessionTrial& trial) { return answers_to(trial, wanted); };
-  const auto found = std::ranges::find_if(trials.trials, answers);
   const auto count = std::ranges::count_if(trials.trials, answers);
-  if (last && count > 0) {
+  if (last ? count > 0 : count == 1) {
     return *std::find_if(trials.trials.rbegin(), trials.trials.rend(), answers);
   }
-  if (count != 1) {
-    throw ConfigError(last ? path : "--trial",
-                      wanted + (count == 0 ? "" : ", which matches several trials"),
-                      "one of " + all_names(trials.trials, nullptr) + " in " + path);
-  }
-  return *found;
+  throw ConfigError(last ? path : "--trial",
+                    wanted + (count == 0 ? "" : ", which matches several trials"),
+                    "one of " + all_names(trials.trials, nullptr) + " in " + path);
 }
 
 std::vector<std::string> notes_of(const SessionTrials& trials, const SessionTrial& chosen) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <limits>
 
@@ -177,6 +178,9 @@ TEST(SessionTest, ALetterThatTwoTrialsHaveIsNotEnough) {
   EXPECT_THAT(error_of(path, "C"),
               HasSubstr("C, which matches several trials, want one of 0 (C, 0.1 s), 1"));
   EXPECT_EQ(read_measurement(path, {"1"}).size(), 100u);
+  EXPECT_EQ(read_measurement(path, {.session_trial = "C"}).stretches[0].start_s, 0.1) << "the last";
+  EXPECT_THAT(support::refusal([&] { (void)read_measurement(path, {.session_trial = "A"}); }),
+              HasSubstr(path + ": got A, want one of 0 (C, 0.1 s), 1 (C, 0.1 s)"));
 }
 
 TEST(SessionTest, WithoutAnIdentificationTheLongestTrialIsTaken) {
@@ -184,7 +188,9 @@ TEST(SessionTest, WithoutAnIdentificationTheLongestTrialIsTaken) {
   file.control(4, PHASE_TRACKING, 0, 100);
   run_ticks(file, 0, 100);
   file.control(5, PHASE_TRACKING, 100, 180);
-  run_ticks(file, 100, 280);
+  run_ticks(file, 100, 200);
+  file.control(5, PHASE_TRACKING, 100, 180);  // said again
+  run_ticks(file, 200, 280);
   file.control(6, PHASE_TRACKING, 300, 120);
   run_ticks(file, 280, 420);
   EXPECT_EQ(read_measurement(file_of(file.close())).size(), 180u);
@@ -220,17 +226,29 @@ TEST(SessionTest, TicksThatOneTopicLacksAreMissing) {
   EXPECT_THAT(sut.notes, Contains("1 sample without a valid reading: treated as missing."));
 }
 
-TEST(SessionTest, ATopicThatIsMostlyMissingIsLeftOut) {
-  SessionFile file;
-  file.control(0, PHASE_TRACKING, 0, 200);
-  for (int tick = 0; tick < 200; ++tick) {
-    file.sensed(tick);
-    if (tick < 100) file.tracking(tick);
+TEST(SessionTest, ATopicThatLacksMoreThanATenthOfTheTicksIsLeftOut) {
+  for (const int there : {179, 180}) {
+    SessionFile file;
+    file.control(0, PHASE_TRACKING, 0, 202);
+    stillhand_msgs::MotorCommand motor;
+    for (int tick = 0; tick < 202; ++tick) {
+      file.sensed(tick, tick == 5 || tick == 6 ? Flag::kFault : Flag::kSaturated);
+      if (tick < there) file.tracking(tick);
+      motor.tick(tick);
+      motor.force_n(0.5 * tick);
+      motor.gain_weight(0.25 * tick);
+      if (tick < there) file.add(topics::kMotorCommand, motor);
+    }
+    const SessionRows sut = read_session_rows(file_of(file.close()), "0");
+    const bool left_out = there == 179;
+    EXPECT_EQ(sut.rows.row_count(), left_out ? 200u : 178u);
+    EXPECT_EQ(sut.rows.columns.size(), left_out ? 7u : 10u);
+    EXPECT_THAT(sut.notes, Contains(left_out ? HasSubstr("x_r and x_p left out")
+                                             : HasSubstr("2 samples without a valid reading")));
+    if (left_out) continue;
+    EXPECT_EQ(sut.rows.find("f_motor")->values[177], 0.5 * 179.0);
+    EXPECT_EQ(sut.weights[5], (std::array{0.25 * 7.0, 0.0}));
   }
-  const Measurement sut = read_measurement(file_of(file.close()));
-  EXPECT_EQ(sut.size(), 200u);
-  EXPECT_EQ(sut.find("x_r"), nullptr);
-  EXPECT_THAT(sut.notes, Contains(HasSubstr("x_r and x_p left out")));
 }
 
 TEST(SessionTest, ARecordingWithoutTrialsIsReadAsAWhole) {
@@ -285,6 +303,8 @@ TEST(SessionTest, AnotherProgramsMcapIsRefusedWithAMappingThatWouldDo) {
 TEST(SessionTest, TicksAndLengthsThatNoSessionHasAreNotBelieved) {
   SessionFile file;
   file.control(0, PHASE_PEGGED, std::numeric_limits<std::int64_t>::max() - 1, 100);
+  file.control(2, PHASE_PEGGED, -1, 100);
+  file.control(3, PHASE_PEGGED, 0, 0);
   file.control(1, PHASE_PEGGED, 10, std::numeric_limits<std::int64_t>::max());
   file.sensed(std::numeric_limits<std::int64_t>::max());
   file.sensed(-5);
