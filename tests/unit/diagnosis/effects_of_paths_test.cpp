@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/core/diagnosis/fitting/lost_sign.hpp"
 #include "tests/unit/diagnosis/proposed.hpp"
 
 // Effects between input and output: time, maps, modes.  Each on a recording of its own.
@@ -56,18 +57,6 @@ TEST(EffectsOfPathsTest, ADelay) {
   expect_proposed(sut, {{0, 0.1134, 0.015, 0.015}});
 }
 
-// 800 us/s over 60 s: 24 ms each way; the reference time is the middle of the record.
-TEST(EffectsOfPathsTest, ClocksThatRunApart) {
-  for (const double drift_us_s : {800.0, -300.0}) {
-    Planted sut = planted("clock_drift", "of the output", answer(sampled([&](double t_s) {
-                            return many_sines(t_s - 1e-6 * drift_us_s * (t_s - 29.995));
-                          })),
-                          sampled(many_sines));
-    // 500 and 1000 us/s are tried on both sides, and none.
-    expect_proposed(sut, {{0, drift_us_s, 250.0, 3.0}, {1, 29.995, 1e-9, 1e-9}});
-  }
-}
-
 TEST(EffectsOfPathsTest, AModeBeyondTheBodysOrder) {
   auto y = answer(kU);
   const auto ringing = made::answer({0.2, -0.1}, made::mode(6.0, 0.05), kU);
@@ -75,23 +64,6 @@ TEST(EffectsOfPathsTest, AModeBeyondTheBodysOrder) {
   // 24 frequencies from 0.3 to 40 Hz, a factor of 1.24 apart; dampings 0.03, 0.1, 0.3.
   expect_proposed(planted("resonance", "beside the body", y),
                   {{0, 6.0, 0.8, 0.02}, {1, 0.05, 0.051, 0.003}});
-}
-
-// The standard deviation is 1: limits of 0.3 to 2.5 are tried.
-TEST(EffectsOfPathsTest, AnInputThatIsLimited) {
-  expect_proposed(
-      planted("input_saturation", "hard",
-              answer(mapped(kU, [](double u) { return std::clamp(u, -1.0, 1.0); })), kU, {"u"}),
-      {{0, 1.0, 0.3, 0.01}});
-}
-
-TEST(EffectsOfPathsTest, AnInputThatBends) {
-  Planted soft =
-      planted("input_saturation", "",
-              answer(mapped(kU, [](double u) { return 1.2 * std::tanh(u / 1.2); })), kU, {"u"});
-  // Either form may screen better; the search distinguishes them by the residual.
-  soft.left = 20.0;
-  expect_proposed(soft);
 }
 
 TEST(EffectsOfPathsTest, AnOutputThatIsLimited) {
@@ -122,27 +94,13 @@ TEST(EffectsOfPathsTest, AnOutputThatBends) {
                   {{0, limit, 0.3 * limit, 0.02 * limit}});
 }
 
-TEST(EffectsOfPathsTest, PlayAtTheInputAndAtTheOutput) {
-  expect_proposed(
-      planted("dead_zone", "at the input",
-              answer(mapped(kU, [](double u) { return u - std::clamp(u, -0.3, 0.3); })), kU, {"u"}),
-      {{0, 0.3, 0.15, 0.01}});
+TEST(EffectsOfPathsTest, PlayAtTheOutput) {
   const auto y = answer(kU);
   const double width = 0.4 * made::rms_of(y);
   std::vector<double> lost = y;
   for (double& value : lost) value -= std::clamp(value, -width, width);
   expect_proposed(planted("dead_zone", "at the output", lost),
                   {{0, width, 0.3 * width, 0.03 * width}});
-}
-
-TEST(EffectsOfPathsTest, SlopesThatDifferWithTheSign) {
-  expect_proposed(
-      planted("asymmetry", "slopes at the input",
-              answer(mapped(kU, [](double u) { return u + 0.15 * std::abs(u); })), kU, {"u"}),
-      {{0, 0.15, 0.02, 0.005}});
-  std::vector<double> y = answer(kU);
-  for (double& value : y) value += 0.15 * std::abs(value);
-  expect_proposed(planted("asymmetry", "slopes at the output", y), {{0, 0.15, 0.02, 0.005}});
 }
 
 // A heater: its power goes with the square of the voltage.  An input of both signs: the linear body
@@ -168,6 +126,12 @@ TEST(EffectsOfPathsTest, AnOutputThatIsASize) {
   expect_proposed(sut);
   const Studied of(sut.measurement, 2);
   EXPECT_GT(of.baseline.rmse, 0.9 * of.signals.output().deviation);
+  // All signs or all the others: the noise of 1 % turns some about 0, of 6000.
+  const std::vector<double> found = with_lost_sign(of.signals);
+  std::size_t alike = 0;
+  const std::vector<double> truth = answer(kU);
+  for (std::size_t n = 0; n < kCount; ++n) alike += found[n] * (truth[n] + offset) > 0.0 ? 1u : 0u;
+  EXPECT_LT(std::min(alike, kCount - alike), 150u);
 }
 
 // Of an output that is 0.4 to 0.6 N the lower of two limits would be none.
@@ -185,14 +149,6 @@ TEST(EffectsOfPathsTest, AnOutputOfOneSignHasNoTwoLimits) {
   };
   EXPECT_FALSE(proposes_two(0.5, 0.1));
   EXPECT_TRUE(proposes_two(0.0, 0.1));
-}
-
-TEST(EffectsOfPathsTest, AnOutputThatHardens) {
-  std::vector<double> y = answer(kU);
-  const double kappa = 0.03 / std::pow(made::rms_of(y), 2);
-  for (double& value : y) value += kappa * value * value * value;
-  expect_proposed(planted("nonlinear_stiffness", "at the output", y),
-                  {{0, kappa, 0.5 * kappa, 0.03 * kappa}});
 }
 
 }  // namespace stillhand::diagnosis::effects_of_paths_test
