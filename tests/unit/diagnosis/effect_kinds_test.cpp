@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <set>
+#include <vector>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
@@ -32,7 +32,8 @@ TEST(EffectKindsTest, AKindThatIsNotThereIsRefused) {
 }
 
 // A recording with several channels of every quantity, no effect in it: whatever a kind proposes
-// must be ready to be fitted.
+// must be ready to be fitted, which takes time: so it proposes few.  Three want to see something
+// first.
 TEST(EffectKindsTest, EveryProposalCanBeRunAndFitted) {
   const auto u = made::ride(kCount, 1);
   const Body body = made::four_pole_body();
@@ -45,11 +46,10 @@ TEST(EffectKindsTest, EveryProposalCanBeRunAndFitted) {
                                                {"temp", "degC", made::ride(kCount, 5, 0.1, 1.0)},
                                                {"y", "N", y}}),
                          4);
-  std::set<std::string> silent;
+  std::vector<std::size_t> counts;
   for (const EffectKind* kind : effect_kinds()) {
     const auto proposals = kind->proposed(of.screening);
-    if (proposals.empty()) silent.emplace(kind->name());
-    EXPECT_LE(proposals.size(), 8u) << kind->name();
+    counts.push_back(proposals.size());
     for (const Proposal& proposal : proposals) {
       SCOPED_TRACE(proposal.effect.kind + ", " + proposal.effect.form);
       EXPECT_EQ(proposal.effect.kind, kind->name());
@@ -69,8 +69,9 @@ TEST(EffectKindsTest, EveryProposalCanBeRunAndFitted) {
       EXPECT_EQ(run.prediction.size(), kCount);
     }
   }
-  // Those that want to see something first.
-  EXPECT_THAT(silent, IsSupersetOf({"tone", "drift", "transients"}));
+  // In the order of kinds.hpp: of each form or kind of place the best one or few.
+  EXPECT_THAT(counts,
+              testing::ElementsAre(2, 2, 4, 3, 4, 8, 6, 7, 3, 4, 3, 0, 0, 3, 1, 1, 3, 0, 5));
 }
 
 // What a recording can't hold isn't proposed: one input, no other channel, no body.

@@ -97,17 +97,6 @@ TEST(EffectMapsTest, NoMapThatKeepsTheSignFallsAnywhere) {
   }
 }
 
-TEST(EffectMapsTest, SymmetricMapsAreOdd) {
-  for (const Effect& sut :
-       {limit_of("input_saturation", "hard", 0.8), limit_of("input_saturation", "soft", 0.8),
-        limit_of("output_saturation", "hard", 0.8), limit_of("output_saturation", "soft", 0.8),
-        play("at the output", 0.3), cubic(0.1), cubic(-0.1)}) {
-    for (const double y : values(200, 3.0, 3)) {
-      ASSERT_EQ(mapped(sut, -y), -mapped(sut, y)) << sut.kind << ", " << sut.form;
-    }
-  }
-}
-
 TEST(EffectMapsTest, AHardLimitLetsEverythingThroughUpToItself) {
   constexpr double kLimit = 0.7;
   for (const char* kind : {"input_saturation", "output_saturation"}) {

@@ -174,6 +174,10 @@ TEST(FreeFormTest, KnotsLieWhereTheirShareOfTheSamplesLiesBelow) {
   std::set<std::string> forms;
   for (const Proposal& each : effect_kind("free_form").proposed(of.screening)) {
     const Effect& effect = each.effect;
+    for (const Parameter& number : effect.parameters) {
+      if (!number.name.starts_with("change_")) continue;
+      EXPECT_EQ(std::pair(number.lower, number.upper), std::pair(-3.0, 3.0)) << effect.form;
+    }
     std::vector<double> x = of.signals.at(effect.channels.back()).values;
     x.erase(x.begin(), x.begin() + 100);
     std::ranges::sort(x);
@@ -184,6 +188,16 @@ TEST(FreeFormTest, KnotsLieWhereTheirShareOfTheSamplesLiesBelow) {
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const double below = shares[k] * static_cast<double>(x.size() - 1);
       EXPECT_EQ(effect.value(k), x[static_cast<std::size_t>(below)]) << effect.form << ", " << k;
+    }
+    if (effect.form != "curve of the input") continue;
+    // At the middle knot u itself, one more held, the others within five times the knots' range.
+    EXPECT_EQ(effect.value(7 + 3), effect.value(3));
+    EXPECT_EQ(complexity(effect), 5u);
+    for (std::size_t k = 7; k < 14; ++k) {
+      const Parameter& height = effect.parameters[k];
+      const double most = height.fitted ? 5.0 * (effect.value(6) - effect.value(0)) : 0.0;
+      EXPECT_NEAR(height.upper - height.value, most, 1e-12) << k;
+      EXPECT_NEAR(height.value - height.lower, most, 1e-12) << k;
     }
   }
   EXPECT_THAT(forms, testing::IsSupersetOf({"force over a channel", "curve of the input"}));
