@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "apps/libraries/report/plot/panel_layout.hpp"
@@ -64,10 +65,20 @@ TEST(AxisLayoutTest, LimitsAndLabelsSuitTheScaleAndWhatIsGiven) {
                           -720.0,
                           180.0,
                           {"−720", "−540", "−360", "−180", "0", "180"}},
+                         // 3120/5 degrees end at a multiple of two turns; of 4320/5 are three.
+                         {vertical({.scale = Scale::kDegrees}, -3000.0, 0.0),
+                          -3600.0,
+                          720.0,
+                          {"−3240", "−2160", "−1080", "0"}},
                          {vertical({.low = 0.0, .high = 80.0}, 17.0, 63.0),
                           0.0,
                           80.0,
                           {"0", "20", "40", "60", "80"}},
+                         // A hundred ticks are a mistake.
+                         {vertical({.low = 0.0, .high = 1.0, .tick_step = 0.01}, 0.0, 1.0),
+                          0.0,
+                          1.0,
+                          {"0", "0.2", "0.4", "0.6", "0.8", "1.0"}},
                          {vertical({.low = 0.0, .high = 1.0, .tick_step = 0.25}, 0.0, 1.0),
                           0.0,
                           1.0,
@@ -81,6 +92,9 @@ TEST(AxisLayoutTest, LimitsAndLabelsSuitTheScaleAndWhatIsGiven) {
   const AxisLayout ticks = horizontal(frequency, 0.01, 10.0);
   for (const AxisTick& tick : ticks.major) EXPECT_EQ(tick.at, std::stod(tick.label));
   EXPECT_EQ(ticks.minor.size(), 3 * 6U) << "3, 4, 6, 7, 8, 9 of each decade";
+  // A decade of 30 px has no lines within it.
+  EXPECT_THAT(horizontal(frequency, 1e-4, 1e6, 300.0).minor,
+              ElementsAre(1e-3, 0.1, 10.0, 1e3, 1e5));
 }
 
 // 6 % of the span on both sides, of its logarithm too, and 3 % along an axis of marks; none below
@@ -125,11 +139,16 @@ TEST(AxisLayoutTest, LabelsSideBySideDoNotTouch) {
   }
 }
 
+// Before the 6 % of its span: a tenth, or 1 where it is 0; on a logarithm's axis a factor of 2.
 TEST(AxisLayoutTest, ASingleValueHasRoomOnBothSides) {
-  for (const Scale scale : {Scale::kLinear, Scale::kLogarithmic}) {
-    const AxisLayout sut = vertical({.scale = scale}, 5.0, 5.0);
-    EXPECT_LT(sut.low, 5.0);
-    EXPECT_GT(sut.high, 5.0);
+  const double room = std::pow(4.0, 0.06);
+  for (const auto& [sut, low, high] : std::vector<std::tuple<AxisLayout, double, double>>{
+           {vertical({}, 5.0, 5.0), 4.5 - 0.06, 5.5 + 0.06},
+           {vertical({}, -5.0, -5.0), -5.5 - 0.06, -4.5 + 0.06},
+           {vertical({}, 0.0, 0.0), -1.12, 1.12},
+           {vertical({.scale = Scale::kLogarithmic}, 5.0, 5.0), 2.5 / room, 10.0 * room}}) {
+    EXPECT_NEAR(sut.low, low, 1e-12);
+    EXPECT_NEAR(sut.high, high, 1e-12);
   }
 }
 
@@ -143,9 +162,14 @@ TEST(AxisLayoutTest, NothingToShowStillGivesAnAxis) {
 
 TEST(AxisLayoutTest, LimitsThatMakeNoAxisAreOpenedUp) {
   const AxisLayout crossed = vertical({.low = 10.0, .high = 2.0}, 0.0, 1.0);
-  EXPECT_LT(crossed.low, crossed.high);
-  const AxisLayout zero = vertical({.scale = Scale::kLogarithmic, .low = 0.0}, 1.0, 100.0);
-  EXPECT_GT(zero.low, 0.0);
+  EXPECT_DOUBLE_EQ(crossed.low, 5.4);  // a tenth about their centre
+  EXPECT_DOUBLE_EQ(crossed.high, 6.6);
+  const Axis logarithmic{.scale = Scale::kLogarithmic};
+  // A limit that it cannot show is none; 3 decades below the largest, or a factor of 4 about 0.1.
+  EXPECT_EQ(horizontal({.scale = Scale::kLogarithmic, .low = 0.0}, 1.0, 100.0).low, 1.0);
+  EXPECT_DOUBLE_EQ(horizontal(logarithmic, -1.0, 5.0).low, 0.005);
+  EXPECT_DOUBLE_EQ(horizontal(logarithmic, -2.0, 0.0).low, 0.05);
+  EXPECT_DOUBLE_EQ(horizontal(logarithmic, -2.0, 0.0).high, 0.2);
 }
 
 TEST(AxisLayoutTest, EveryTickLiesWithinTheLimits) {

@@ -4,9 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <random>
 #include <string>
+#include <vector>
 
 #include "apps/libraries/report/text/text.hpp"
 
@@ -43,57 +42,23 @@ TEST(LegendLayoutTest, AnEntryWiderThanTheLegendHasARowOfItsOwn) {
   EXPECT_GT(sut.width_px, 200.0);
 }
 
-TEST(LegendLayoutTest, AnEntryThatFitsExactlyStaysInItsRow) {
-  const auto series = labelled({"aaa", "bbb"});
-  const LegendBlock wide = flow_legend(series, 1e6);
-  ASSERT_EQ(wide.rows, 1);
-  EXPECT_EQ(flow_legend(series, wide.width_px).rows, 1);
-  EXPECT_EQ(flow_legend(series, wide.width_px * (1.0 - 1e-12)).rows, 2);
-}
-
-// Over random labels and widths: the order is that of the series, entries of a row do not touch, no
-// row is left while the next entry fits into it, and the block's size covers its entries.
-TEST(LegendLayoutTest, RowsAreFilledInOrderWithoutOverlap) {
-  std::mt19937_64 random(61);
-  for (int round = 0; round < 300; ++round) {
-    std::vector<std::string> labels(random() % 12);
-    for (std::string& label : labels) label = std::string(random() % 20, "ilmW."[random() % 5]);
-    const auto series = labelled(labels);
-    const double width_px = 50.0 + static_cast<double>(random() % 600);
-    const LegendBlock sut = flow_legend(series, width_px);
-    double widest_px = 0.0;
-    for (std::size_t i = 0; i < sut.entries.size(); ++i) {
-      const LegendEntry& entry = sut.entries[i];
-      widest_px = std::max(widest_px, right_px(entry, series));
-      ASSERT_GT(entry.middle_px, 0.0);
-      ASSERT_LT(entry.middle_px, sut.height_px());
-      ASSERT_TRUE(entry.left_px == 0.0 || right_px(entry, series) <= width_px + 1e-9);
-      if (i == 0) continue;
-      const LegendEntry& before = sut.entries[i - 1];
-      ASSERT_GT(entry.series, before.series);
-      if (entry.middle_px == before.middle_px) {
-        ASSERT_GT(entry.left_px, right_px(before, series));
-      } else {
-        ASSERT_EQ(entry.left_px, 0.0);
-        ASSERT_DOUBLE_EQ(entry.middle_px - before.middle_px, kLegendRow_px);
-        // Two entries of a row are less than 20 px apart.
-        ASSERT_GT(right_px(before, series) + 20.0 + right_px(entry, series), width_px);
-      }
-    }
-    ASSERT_DOUBLE_EQ(sut.width_px, widest_px);
-    ASSERT_EQ(sut.rows == 0, sut.entries.empty());
+// Rows of 19 px; in a row 18 px are between an entry and the next.
+TEST(LegendLayoutTest, EntriesFillTheirRowsInOrder) {
+  const auto series = labelled({"aaa", "bbb", "", "mmm", "i"});
+  const double w = right_px({0, 0.0, 0.0}, series), wide = right_px({3, 0.0, 0.0}, series);
+  const double two_px = flow_legend(labelled({"aaa", "bbb"}), 1e6).width_px;
+  EXPECT_DOUBLE_EQ(two_px, 2.0 * w + 18.0);
+  const LegendBlock sut = flow_legend(series, two_px);
+  EXPECT_EQ(sut.rows, 2);
+  EXPECT_EQ(sut.width_px, two_px);
+  EXPECT_EQ(flow_legend(series, two_px * (1.0 - 1e-12)).rows, 3);
+  std::vector<double> places;
+  for (const LegendEntry& each : moved(sut, 10.0, -5.0)) {
+    places.insert(places.end(), {static_cast<double>(each.series), each.left_px, each.middle_px});
   }
-}
-
-TEST(LegendLayoutTest, AMovedBlockKeepsItsShape) {
-  const LegendBlock block = flow_legend(labelled({"aaa", "bbb", "ccc"}), 100.0);
-  const auto sut = moved(block, 10.0, -5.0);
-  ASSERT_EQ(sut.size(), block.entries.size());
-  for (std::size_t i = 0; i < sut.size(); ++i) {
-    EXPECT_EQ(sut[i].series, block.entries[i].series);
-    EXPECT_DOUBLE_EQ(sut[i].left_px, block.entries[i].left_px + 10.0);
-    EXPECT_DOUBLE_EQ(sut[i].middle_px, block.entries[i].middle_px - 5.0);
-  }
+  EXPECT_THAT(places,
+              testing::Pointwise(testing::DoubleEq(), {0.0, 10.0, 4.5, 1.0, 28.0 + w, 4.5,  //
+                                                       3.0, 10.0, 23.5, 4.0, 28.0 + wide, 23.5}));
 }
 
 }  // namespace stillhand::report::legend_layout_test

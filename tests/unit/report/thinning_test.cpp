@@ -16,44 +16,10 @@ using testing::ElementsAre;
 
 constexpr double kWidth_px = 100.0;
 
-// 50 points a column; irrational steps, so that extrema fall anywhere in a column.
-std::vector<double> columns(std::size_t count) {
-  std::vector<double> x(count);
-  for (std::size_t i = 0; i < count; ++i) x[i] = 0.02 * static_cast<double>(i);
-  return x;
-}
-
-std::vector<double> wave(std::size_t count) {
-  std::vector<double> y(count);
-  for (std::size_t i = 0; i < count; ++i) y[i] = std::sin(1.7 * static_cast<double>(i * i % 997));
-  return y;
-}
-
 TEST(ThinLineTest, EachColumnKeepsItsFirstLastLowestAndHighest) {
-  const std::vector<double> x{0.0, 0.2, 0.4, 0.6, 0.8, 1.5};
-  const std::vector<double> y{0.0, 5.0, 1.0, -5.0, 2.0, 9.0};
-  EXPECT_THAT(thin_line(x, y, y, kWidth_px), ElementsAre(0, 1, 3, 4, 5));
-}
-
-TEST(ThinLineTest, TheExtremaOfEveryColumnSurvive) {
-  const auto x = columns(5000);
-  const auto y = wave(5000);
-  const auto kept = thin_line(x, y, y, kWidth_px);
-  EXPECT_LE(kept.size(), 4 * 100U);
-  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), std::less_equal<>())) << "each once";
-  for (int column = 0; column < 100; ++column) {
-    const auto begin = y.begin() + column * 50;
-    const auto [low, high] = std::minmax_element(begin, begin + 50);
-    double kept_low = 2.0;
-    double kept_high = -2.0;
-    for (const std::size_t i : kept) {
-      if (std::floor(x[i]) != column) continue;
-      kept_low = std::min(kept_low, y[i]);
-      kept_high = std::max(kept_high, y[i]);
-    }
-    ASSERT_EQ(kept_low, *low) << "column " << column;
-    ASSERT_EQ(kept_high, *high) << "column " << column;
-  }
+  const std::vector<double> x{0.0, 0.2, 0.4, 0.6, 0.8, 1.5, 1.6, 1.7};
+  const std::vector<double> y{0.0, 5.0, 1.0, -5.0, 2.0, 9.0, 9.0, 9.0};
+  EXPECT_THAT(thin_line(x, y, y, kWidth_px), ElementsAre(0, 1, 3, 4, 5, 7));
 }
 
 TEST(ThinLineTest, ABandKeepsTheLowestOfItsLowerAndTheHighestOfItsUpperEdge) {
@@ -64,9 +30,9 @@ TEST(ThinLineTest, ABandKeepsTheLowestOfItsLowerAndTheHighestOfItsUpperEdge) {
 }
 
 TEST(ThinLineTest, WhatLiesOutOfSightCountsAsOneColumnOnEachSide) {
-  auto x = columns(5000);
-  for (double& value : x) value = value * 10.0 - 450.0;  // -450 .. 550 px
-  EXPECT_LE(thin_line(x, wave(5000), wave(5000), kWidth_px).size(), 4 * 102U);
+  const std::vector<double> x{-30.0, -2.0, -0.1, 0.0, 99.9, 100.0, 101.0, 300.0};
+  const std::vector<double> y(x.size(), 1.0);
+  EXPECT_THAT(thin_line(x, y, y, kWidth_px), ElementsAre(0, 2, 3, 4, 5, 7));
 }
 
 TEST(ThinLineTest, ACurveThatTurnsBackKeepsEveryPoint) {
