@@ -111,6 +111,63 @@ TEST(PageLayoutTest, EverythingIsOnTheScreenAndNothingOverlaps) {
   }
 }
 
+// On a screen of 1.6 m by 1 m, in m and grey.  Of sizes that METHOD gives as shares of the height,
+// a baseline is 0.8 em under the top of its line, 0.365 em under the middle of a box; gaps of 0.055
+// are between the parts, which are 0.7048 high and stand in the middle.
+TEST(PageLayoutTest, EachPartHasItsPlaceSizeAndGrey) {
+  ScreenConfig screen;
+  screen.width_m = 1.6;
+  screen.height_m = 1.0;
+  Page page;
+  page.task = false;
+  page.corner_left = "left";
+  page.corner_right = std::string(40, 'r');
+  page.heading = "heading";
+  page.lines = {"one", "two"};
+  page.caption = "caption";
+  page.below = "below";
+  page.lowest = "low";
+  page.highest = "higher";
+  page.steps = page.chosen = 2;
+  page.button = "OK";
+  page.button_works = false;
+  page.hint = "hint";
+  page.rig = std::string(80, 'r');
+  const std::vector<std::vector<double>> expected{
+      // x, share of the text left of it, baseline, em, grey
+      {0.0, 0.5, 0.3076, 0.056, 255.0},                // heading
+      {0.0, 0.5, 0.2126, 0.036, 255.0},                // one
+      {0.0, 0.5, 0.1478, 0.036, 255.0},                // two, 0.8 em below it
+      {-0.0567, 0.5, 0.03046, 0.036, 255.0},           // 1
+      {0.0567, 0.5, 0.03046, 0.036, 0.0},              // 2, black in its box
+      {-0.0987, 0.0, -0.0374, 0.03, 255.0},            // low: from the first box's left side
+      {0.1872, 1.0, -0.0374, 0.03, 255.0},             // higher: as far as it is long
+      {0.0, 0.5, -0.15354, 0.036, 90.0},               // OK
+      {0.0, 0.5, -0.2554, 0.03, 150.0},                // caption
+      {0.0, 0.5, -0.3452, 0.036, 255.0},               // below
+      {-0.765, 0.0, 0.4442, 0.026, 150.0},             // left corner
+      {0.765, 1.0, 0.4442, 0.43 * 1.6 / 41.6, 150.0},  // right, not beyond 0.43 of the width
+      {0.0, 0.5, -0.465, 0.026, 150.0},                // hint
+      {0.0, 0.5, -0.492, 0.86 * 1.6 / 83.2, 150.0}};   // rig, not beyond 0.86
+  const PageLayout sut = lay_out(page, screen, wide);
+  const auto near = [](const std::vector<double>& numbers) {
+    return testing::Pointwise(testing::DoubleNear(1e-9), numbers);
+  };
+  ASSERT_EQ(sut.texts.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const PlacedText& each = sut.texts[i];
+    EXPECT_THAT((std::vector{each.x_m, each.share, each.baseline_m, each.em_m, each.grey}),
+                near(expected[i]))
+        << each.text;
+  }
+  std::vector<double> sides;
+  for (const auto& [area, value, filled, grey] : sut.boxes) {
+    sides.insert(sides.end(), {area.left_m, area.right_m, area.bottom_m, area.top_m, grey});
+  }
+  EXPECT_THAT(sides, near({-0.0987, -0.0147, 0.0016, 0.0856, 255.0, 0.0147, 0.0987, 0.0016, 0.0856,
+                           255.0, -0.07344, 0.07344, -0.1764, -0.1044, 90.0}));
+}
+
 TEST(PageLayoutTest, WordsStayAboveTheTask) {
   Page page;
   page.heading = "Trial 4 of 12";
@@ -133,17 +190,6 @@ TEST(PageLayoutTest, AScaleCanBeClickedBoxByBox) {
               box.value);
   }
   EXPECT_NEAR(sut.boxes[0].area.left_m, -sut.boxes[8].area.right_m, 1e-12);
-  // A number stands in the middle of its box, a square.
-  for (const PlacedBox& box : sut.boxes) {
-    if (box.value == kButton) continue;
-    EXPECT_NEAR(box.area.right_m - box.area.left_m, box.area.top_m - box.area.bottom_m, 1e-12);
-    const auto number = std::ranges::find(sut.texts, std::to_string(box.value), &PlacedText::text);
-    ASSERT_NE(number, sut.texts.end()) << box.value;
-    const Extent own = extent(*number);
-    EXPECT_NEAR(own.left_m + own.right_m, box.area.left_m + box.area.right_m, 1e-9);
-    EXPECT_GT(number->baseline_m, box.area.bottom_m);
-    EXPECT_LT(number->baseline_m, (box.area.bottom_m + box.area.top_m) / 2);
-  }
   EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, kButton));
   EXPECT_FALSE(sut.box_at(0.0, 0.11));
 }
@@ -151,16 +197,11 @@ TEST(PageLayoutTest, AScaleCanBeClickedBoxByBox) {
 TEST(PageLayoutTest, ReadableTypeAtTheDistanceOfAMonitor) {
   Page page = fullest(7);
   page.lines = {"How hard was it to keep the cross in the box?"};
-  int lines = 0;
   for (const PlacedText& text : lay_out(page, {}, wide).texts) {
     // Capitals of 4 mm at 0.7 m are 20 minutes of arc (ISO 9241-303 recommends 20 to 22, at least
     // 16).
     EXPECT_GE(0.73 * text.em_m, 0.0040) << text.text;
-    if (!page.lines[0].starts_with(text.text)) continue;
-    ++lines;
-    EXPECT_NEAR(0.73 * text.em_m, 0.0060, 0.0001);  // Eq. DI-9
   }
-  EXPECT_GT(lines, 0);
 }
 
 TEST(PageLayoutTest, LinesBreakBetweenWords) {
