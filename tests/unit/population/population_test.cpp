@@ -5,7 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
+#include <type_traits>
 #include <vector>
 
 #include "services/core/rig/rig.hpp"
@@ -57,10 +61,13 @@ TEST(PopulationTest, ASubjectDoesNotDependOnHowManyOthersThereAre) {
   EXPECT_NE(alone.body.trunk_mass_kg, draw_subject(population, 4, 5).body.trunk_mass_kg);
 }
 
-TEST(PopulationTest, TheArmIsStifferWhenItTracksThanWhenItIdles) {
-  for (int i = 0; i < 100; ++i) {
-    EXPECT_GT(draw_subject({}, 1, i).body.cocontraction_stiffness_factor, 1.0);
-  }
+TEST(PopulationTest, TheArmIsNoSofterWhenItTracksThanWhenItIdles) {
+  Population wide;
+  wide.cocontraction_cv = 1.0;
+  const auto factors =
+      drawn(wide, 100, [](const Subject& s) { return s.body.cocontraction_stiffness_factor; });
+  EXPECT_EQ(std::ranges::min(factors), 1.0);
+  EXPECT_EQ(std::ranges::max(factors), 4.0);  // the range of the rig's setting
 }
 
 // Oracle: a constant force on the free stick until it rests.  K of Eq. SU-2 is the series
@@ -109,6 +116,28 @@ TEST(PopulationTest, RigAndOperatorHaveTheMeanSubjectsHandByDefault) {
   };
   EXPECT_THAT(numbers(rig::BodyConfig{}), near(numbers(mean.body)));
   EXPECT_THAT(numbers(human_operator::CrossoverConfig{}), near(numbers(mean.who)));
+}
+
+// Half of the way to the top of each range.
+struct Raised {
+  void operator()(const char*, double& value, Range range, const char*) const {
+    value = 0.5 * (value + range.max);
+  }
+};
+
+// Of the body the eleven numbers of masses, springs, dampers and co-contraction, and nine of its
+// nerves; of the operator seven, and the three of the feel.
+TEST(PopulationTest, EveryNumberOfTheFileReachesTheSubject) {
+  Population raised;
+  Population::fields(Raised{}, raised);
+  const Subject sut = mean_subject(raised);
+  const auto changed = [](const auto& config) {
+    const auto before = numbers(std::decay_t<decltype(config)>{}), after = numbers(config);
+    return std::inner_product(before.begin(), before.end(), after.begin(), 0, std::plus{},
+                              std::not_equal_to{});
+  };
+  EXPECT_EQ(changed(sut.body), 11 + 9);
+  EXPECT_EQ(changed(sut.who), 7 + 3);
 }
 
 TEST(PopulationTest, ANegativeStiffnessIsRefusedByName) {
