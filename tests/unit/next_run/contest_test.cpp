@@ -56,10 +56,11 @@ TEST(ContestTest, TheRivalIsFittedToBothRuns) {
   // The edge of the first second is a sample of 2000.
   EXPECT_NEAR(sut.expected(run, 0).separation(0, 1), expected, 0.002 * expected);
   EXPECT_NEAR(sut.expected(run, 5).separation(0, 1), expected, 0.002 * expected);
-  // All blocks are alike: the scatter is that of the noise alone, but for the edge.
-  const double error =
-      2.0 * std::sqrt(c * c * (2000.0 + 2000.0 * 3200.0 / 5200.0 * 3200.0 / 5200.0));
-  EXPECT_LT(sut.expected(run, 0).standard_error(0, 1), 1.5 * error);
+  // What is left, d z - c x, has in each of nine blocks 200 q, in those of both edges 100 q: as 11
+  // times their variance, 18000 q^2.  To it comes that of its product with the noise.
+  const double q = c * c * (1.0 + 3200.0 / 5200.0 * 3200.0 / 5200.0);
+  const double error = std::sqrt(18'000.0 * q * q + 4.0 * 2000.0 * q);
+  EXPECT_NEAR(sut.expected(run, 0).standard_error(0, 1), error, 0.01 * error);
   // Both have an offset, a gain and the force of a channel, each determined by itself: ln(1 + N).
   for (const double price : sut.expected(run, 0).price) {
     EXPECT_NEAR(price, 3.0 * std::log(5201.0 / 3201.0), 0.01);
@@ -120,6 +121,17 @@ TEST(EvidenceTest, StrongEvidenceBeatsARival) {
   EXPECT_FALSE(settled(7.9, 4.0));
   EXPECT_TRUE(settled(8.0, 4.0));
   EXPECT_TRUE(settled(6.0, 3.0));
+}
+
+TEST(EvidenceTest, WhoBeatsAllOthersAloneWins) {
+  Evidence sut{Eigen::MatrixXd{{0.0, 9.0, 5.0}, {-9.0, 0.0, -9.0}, {-5.0, 9.0, 0.0}},
+               Eigen::MatrixXd::Zero(3, 3)};
+  EXPECT_THAT(sut.left(), ElementsAre(0, 2));
+  sut.twice_log_ratio(1, 2) = 9.0;  // which beats it, but is beaten
+  EXPECT_THAT(sut.left(), ElementsAre(0));
+  EXPECT_EQ(sut.winner(), -1);
+  sut.twice_log_ratio(0, 2) = 6.0;
+  EXPECT_EQ(sut.winner(), 0);
 }
 
 TEST(ContestTest, ARepetitionLeavesBoth) {

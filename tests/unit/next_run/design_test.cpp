@@ -76,6 +76,24 @@ TEST(DesignTest, LoudAndQuietPartsTakeTurns) {
   }
 }
 
+// From 0.5 to 4.5 Hz in 2201 steps of 10 ms: 0.5 9^(n/2201).  0.15 m bind to 1.06 Hz, 1 m/s to
+// 1.17 Hz, then the peak.
+TEST(DesignTest, ASweepIsAsLoudAsTheLimitsAllowAtEachFrequency) {
+  Bounds limits = bounds();
+  limits.limits.max_velocity_m_s = 1.0;
+  const Ride sut = ride_of({Family::kSweep, 0.5, 4.5, 1.0, 1.0, 1}, limits);
+  ASSERT_EQ(sut.accel_m_s2.size(), 2201u);
+  EXPECT_EQ(sut.accel_m_s2[0], 0.0);
+  for (const auto& [n, most_m_s2] : std::vector<std::pair<int, double>>{
+           {300, 2.694764}, {770, 6.776150}, {800, 6.982155}, {1500, 7.35}, {2000, 7.35}}) {
+    const double w_rad_s = std::numbers::pi * std::pow(9.0, n / 2201.0);
+    const double phase_rad = (w_rad_s - std::numbers::pi) * 22.01 / std::log(9.0);
+    EXPECT_NEAR(sut.accel_m_s2[static_cast<std::size_t>(n)], 0.98 * most_m_s2 * std::sin(phase_rad),
+                1e-5)
+        << n;
+  }
+}
+
 TEST(DesignTest, WhatTheLimitsForbidIsRefused) {
   Bounds narrow = bounds();
   narrow.limits.max_position_m = 0.001;
