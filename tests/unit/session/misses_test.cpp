@@ -86,13 +86,18 @@ TEST(MissesTest, ASessionInTimeHasNone) {
 }
 
 TEST(MissesTest, WhoStandsIsNamedWithTimeLengthForceAndWhoWaited) {
-  const auto sut = misses_in(session({{"sensing", 2000, 2073}}));
+  SessionRecording recording = session({{"sensing", 2000, 2073}});
+  recording.log_less_stamp_ns = 5'000'000'000;
+  recording.first_log_ns = 4'000'000'000;
+  const auto sut = misses_in(recording);
   ASSERT_THAT(sut, SizeIs(1));
   const Miss& miss = sut.front();
   EXPECT_EQ(miss.process, "sensing");
   EXPECT_EQ(miss.topic, "stillhand/sensed");
   EXPECT_EQ(miss.trial, 3);
   EXPECT_NEAR(miss.trial_s, 1.5, 1e-3);
+  // 2 s and 1 s; sensing answers 0.2 ms after a tick, the last time in tick 1999.
+  EXPECT_NEAR(miss.from_s, 2.9997, 1e-9);
   EXPECT_FALSE(miss.pegged);
   EXPECT_NEAR(miss.late_s, 0.073, 0.5e-3 + 1e-12);  // Eq. MI-1: half a tick
   EXPECT_THAT(miss.waited, ElementsAre("motion", "cancellation", "display", "human_operator"));
@@ -182,8 +187,10 @@ TEST(MissesTest, WhatTheRecordingLacksIsNobodysSilence) {
 TEST(MissesTest, AForceThatIsNotThePredictionsIsNotJudged) {
   SessionRecording recording = session({{"sensing", 2000, 2073}});
   for (auto& command : recording.motor_commands) command.predicted_force_n(0.0);
+  recording.trial_controls[0].phase(stillhand_msgs::PHASE_PEGGED);
   const auto sut = misses_in(recording);
   ASSERT_THAT(sut, SizeIs(1));
+  EXPECT_TRUE(sut.front().pegged);
   EXPECT_GT(sut.front().force_before_n, 1.0);
   EXPECT_EQ(sut.front().back_s, 0.0);
 }
