@@ -188,7 +188,6 @@ struct Solution {
 Solution solve(Problem& problem, const ArmValues& start) {
   Solution out;
   out.x = problem.numbers(start);
-  problem.reweight(start);
   for (int i = 0; i < kReweightings; ++i) {
     ceres::TinySolver<Problem> solver;
     solver.options.max_num_iterations = 60;

@@ -125,7 +125,6 @@ std::int64_t settle_samples(const std::vector<std::complex<double>>& poles) {
   for (const std::complex<double>& pole : poles) {
     const double radius = std::abs(pole);
     if (!(radius < 1.0)) return kMaxSettle_ticks + 1;
-    if (radius < 1e-6) continue;
     const double samples = std::ceil(std::log(0.01) / std::log(radius));
     if (!(samples <= static_cast<double>(kMaxSettle_ticks))) return kMaxSettle_ticks + 1;
     slowest = std::max(slowest, static_cast<std::int64_t>(samples));

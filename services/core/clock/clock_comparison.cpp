@@ -59,13 +59,10 @@ std::optional<std::int64_t> ClockComparison::take(const Exchange& exchange) noex
     const double allowed_s =
         std::max(0.5 * sample.round_trip_s + 3.0 * line.spread_s, kLeastStep_s);
     const bool off_line = std::abs(distance_s) > allowed_s;
-    if (off_line && (away_ == 0 || away_above_ == (distance_s > 0.0))) {
-      ++away_;
-      away_above_ = distance_s > 0.0;
-    } else {
-      away_ = off_line ? 1 : 0;
-      away_above_ = distance_s > 0.0;
-    }
+    const bool above = distance_s > 0.0;
+    if (!off_line || above != away_above_) away_ = 0;
+    if (off_line) ++away_;
+    away_above_ = above;
   }
   if (count_ == kWindow) forget_but(kWindow - 1);
   samples_[count_++] = sample;

@@ -164,7 +164,6 @@ void judge(RateConversion& result, const Target& want) {
   for (std::size_t k = 0; k < want.h.size(); ++k) {
     if (want.weight[k] == 1.0) excited_peak = std::max(excited_peak, std::abs(want.h[k]));
   }
-  result.max_error = result.excited_error = 0.0;
   for (std::size_t k = 0; k < want.h.size(); ++k) {
     const Complex got = signal::response_at(result.model, want.frequency_hz[k]);
     const double error = std::abs(got - want.h[k]) / excited_peak;

@@ -57,7 +57,6 @@ void check(const TrackingRecord& record, const signal::ReferenceDesign& design,
 
 // Means of equal groups: the same filter on cursor and error, so their ratio at a line stays.
 std::vector<double> thinned(const std::vector<double>& samples, std::size_t group) {
-  if (group == 1) return samples;
   std::vector<double> out(samples.size() / group, 0.0);
   for (std::size_t n = 0; n < out.size(); ++n) {
     for (std::size_t i = 0; i < group; ++i) out[n] += samples[n * group + i];

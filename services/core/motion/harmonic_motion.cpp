@@ -127,8 +127,7 @@ signal::MotionSample HarmonicMotion::at(Tick n) const noexcept {
   const double whole = std::floor(along);
   const double u = along - whole;
   const auto count = static_cast<std::int64_t>(cells_.size());
-  auto index = static_cast<std::int64_t>(whole);
-  if (index < 0 || index >= count) index = ((index % count) + count) % count;
+  const std::int64_t index = (static_cast<std::int64_t>(whole) % count + count) % count;
   const auto& c = cells_[static_cast<std::size_t>(index)];
   double x = c[7];
   double v = 7.0 * c[7];

@@ -245,8 +245,7 @@ std::vector<Tried> tried(const std::vector<Design>& designs, const Contest& cont
       all[d].margin = contest.margin(expected);
       all[d].settled = contest.probability_settled(expected);
       all[d].reach = reach_of(contest, run);
-    } catch (const ConfigError&) {
-      all[d].margin = {};
+    } catch (const ConfigError&) {  // the limits do not allow it
     }
   });
   std::erase_if(all, [](const Tried& each) { return each.margin.size() == 0; });
