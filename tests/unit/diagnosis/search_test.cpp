@@ -40,37 +40,25 @@ TEST(SearchTest, ModelsAreComparedBlockByBlock) {
   EXPECT_NEAR(sut.p, 0.5 * std::erfc(0.8 / std::sqrt(2.0)), 1e-12);
 }
 
-TEST(SearchTest, AnImprovementInEveryBlockIsAsUnlikelyAsItsSigns) {
-  std::vector<double> before(20);
-  std::vector<double> after(20);
-  for (std::size_t b = 0; b < 20; ++b) {
-    before[b] = 10.0 + static_cast<double>(b);
-    after[b] = before[b] - 1.0 - 0.1 * static_cast<double>(b);
-  }
-  const Comparison better = compared(of_squares(before), of_squares(after));
-  EXPECT_DOUBLE_EQ(better.p, std::ldexp(1.0, -20));
-  EXPECT_GT(better.t, 0.0);
-  const Comparison worse = compared(of_squares(after), of_squares(before));
-  EXPECT_EQ(worse.p, 1.0);
-  EXPECT_EQ(worse.t, -better.t);
-  EXPECT_GT(worse.rmse_ratio, 1.0);
-}
-
 TEST(SearchTest, BlocksThatWeighNothingDoNotCountAndTooFewSayNothing) {
   HeldOut before = of_squares({4.0, 8.0, 12.0, 16.0, 1e6});
   HeldOut after = of_squares({2.0, 6.0, 10.0, 18.0, 1.0});
-  before.weights[4] = after.weights[4] = 0.0;
-  EXPECT_DOUBLE_EQ(compared(before, after).rmse_ratio, std::sqrt(18.0 / 20.0));
+  for (const auto& [of_before, of_after] : {std::pair{0.99, 2.0}, {2.0, 0.99}}) {
+    before.weights[4] = of_before;
+    after.weights[4] = of_after;
+    EXPECT_DOUBLE_EQ(compared(before, after).rmse_ratio, std::sqrt(18.0 / 20.0));
+  }
+  // All of three fall, or all rise.
+  const HeldOut large = of_squares({4.0, 8.0, 12.0});
+  const HeldOut small = of_squares({2.0, 4.0, 6.0});
+  EXPECT_EQ(compared(large, small).p, 0.125);
+  EXPECT_EQ(compared(small, large).p, 1.0);
+  EXPECT_EQ(compared(small, large).t, -compared(large, small).t);
+  EXPECT_EQ(compared(of_squares({4.0, 6.0, 8.0}), small).t, 1e6) << "without a spread";
   const Comparison sut = compared(of_squares({4.0, 8.0}), of_squares({1.0, 1.0}));
   EXPECT_EQ(sut.p, 1.0);
   EXPECT_EQ(sut.t, 0.0);
   EXPECT_EQ(sut.rmse_ratio, 1.0);
-}
-
-TEST(SearchTest, TasksAreDoneInOrder) {
-  std::vector<std::size_t> done;
-  in_order(3, [&](std::size_t i) { done.push_back(i); });
-  EXPECT_THAT(done, ElementsAre(0u, 1u, 2u));
 }
 
 // Static, so that a whole search takes little.
@@ -132,6 +120,24 @@ TEST(SearchTest, OfTwoThatExplainAsMuchTheSimplerIsAdded) {
   EXPECT_GT(first.chosen, 0u);
   EXPECT_EQ(first.tried[first.chosen].model.effects[0].form, "linear");
   EXPECT_EQ(sut.model.effects[0].form, "linear");
+}
+
+// v = a + b + 0.5 e explains most of a + b, then a and b explain all of it, and v is idle.
+TEST(SearchTest, AnEffectThatLaterOnesMakeIdleLeaves) {
+  constexpr std::size_t kCount = 6000;
+  const auto a = made::ride(kCount, 2);
+  const auto b = made::ride(kCount, 3);
+  const auto v = made::mix({{1.0, a}, {1.0, b}, {0.5, made::ride(kCount, 5)}});
+  const auto u = made::ride(kCount, 1);
+  const auto y = made::mix({{2.0, u}, {1.0, a}, {1.0, b}, {0.1, made::white(kCount, 4)}});
+  const SearchResult sut = searched(made::measurement_of(
+      {{"u", "V", u}, {"v", "V", v}, {"a", "V", a}, {"b", "V", b}, {"y", "N", y}}));
+  EXPECT_EQ(sut.removed, 1u);
+  ASSERT_EQ(sut.model.effects.size(), 2u);
+  ASSERT_EQ(sut.additions.size(), 2u);
+  for (const Effect& effect : sut.model.effects) {
+    EXPECT_NEAR(effect.coefficients[0], 1.0, 0.01) << "0.1/sqrt(5900)";
+  }
 }
 
 TEST(SearchTest, NoMoreIsAddedThanIsMissingOrAskedFor) {

@@ -143,6 +143,21 @@ TEST(SelectionTest, ASmallImprovementMustBeCertainForAllCandidates) {
   EXPECT_FALSE(worth_it({}, {}, 0.0, 1)) << "as it is where nothing was compared";
 }
 
+// Of eight blocks p is 2^-8 at best, too much for a hundred candidates.  Bursts need a fall of 15
+// %, to a square of 0.7225, and what the rows show 1 %, to 0.9801.
+TEST(SelectionTest, BurstsAndWhatTheRowsShowNeedNoSigns) {
+  const auto added = [&](double drift, const char* kind, double square) {
+    std::vector<Trial> sut{even("drift", drift, 1), even(kind, square, 1)};
+    sut[1].model.effects[0].form = "clip above";
+    return added_of(sut, even("drift", 1.0, 1).held_out, 0.01, 100, {});
+  };
+  EXPECT_EQ(added(0.9, "output_saturation", 0.98), 1u) << "the drift may be chance";
+  EXPECT_EQ(added(0.9, "output_saturation", 0.981), 2u) << "none";
+  EXPECT_EQ(added(0.9, "transients", 0.722), 1u);
+  EXPECT_EQ(added(0.9, "transients", 0.723), 2u);
+  EXPECT_EQ(added(0.722, "tone", 0.9), 0u) << "15 % need no more than p";
+}
+
 // 1e-9 of the output's deviation, 2.
 TEST(SelectionTest, RoundingIsMeasuredByTheOutput) {
   std::vector<double> y(400);
