@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "services/core/diagnosis/apart_from_time.hpp"
+#include "services/core/diagnosis/parts_out.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis::carried_test {
@@ -138,6 +139,26 @@ TEST(CarriedTest, AnEffectThatTheInputsDetermineIsCarriedWithItsRange) {
   EXPECT_EQ(effect.seen[0].of, "v");
   EXPECT_LT(effect.seen[0].low, -2.0);
   EXPECT_GT(effect.seen[0].high, 2.0);
+  // In the same session the clock goes on; next to the drift 0.1/sqrt(5900).
+  ASSERT_THAT(sut.carried.in_session.effects, SizeIs(2));
+  EXPECT_NEAR(sut.carried.in_session.effects[0].coefficients[0], 0.5, 0.005);
+  EXPECT_EQ(sut.carried.in_session.effects[0].seen[0].high, effect.seen[0].high);
+  const CarriedModel none = carried_model(sut.found, sut.studied.baseline.model,
+                                          sut.studied.signals, sut.studied.blocks, {true, false});
+  ASSERT_THAT(none.left_out, SizeIs(2));
+  EXPECT_THAT(none.left_out[1].why, HasSubstr("less than what counts"));
+}
+
+// 0.5, 0.5 and 0.2 in the thirds; a fit to the others has 0.35, 0.35 and 0.5.  The share is 0.45 of
+// 0.495; its parts miss it by 0.0636, 0.0636 and -0.1273, the standard error is 0.386, and what is
+// left is 0.909 (1 - 0.424^2).
+TEST(CarriedTest, AnEffectThatThePartsAgreeOnInPartIsCarriedInPart) {
+  const Sut sut(Made([](const Made& m, std::size_t n) {
+                  return (n < 2 * kCount / 3 ? 0.5 : 0.2) * m.v[n];
+                }).measurement(),
+                {kOfV});
+  ASSERT_THAT(sut.carried.model.effects, SizeIs(1));
+  EXPECT_NEAR(sut.carried.model.effects[0].share, 0.745, 0.04);
 }
 
 TEST(CarriedTest, AnEffectThatHelpsToPredictNothingIsDropped) {
@@ -168,12 +189,7 @@ TEST(CarriedTest, ATemperatureThatOnlyLooksLikeADriftIsLeftOut) {
   EXPECT_THAT(sut.carried.model.effects, IsEmpty());
   ASSERT_THAT(sut.carried.left_out, SizeIs(1));
   EXPECT_THAT(sut.carried.left_out[0].why, HasSubstr("time alone"));
-}
-
-TEST(CarriedTest, AFastChannelIsApartFromTime) {
-  const Sut sut(Made([](const Made& m, std::size_t n) { return 0.01 * m.v[n]; }).measurement(),
-                {kOfV});
-  EXPECT_GT(apart_from_time(sut.found, 0, sut.studied.signals, sut.studied.blocks), 0.95);
+  EXPECT_TRUE(sut.carried.left_out[0].like_time);
 }
 
 // Three recordings; v acts in the first one alone, and without harm to the others.
@@ -207,6 +223,62 @@ TEST(CarriedTest, BurstsAreLeftOutOfTheFitAndOfNothingElse) {
   EXPECT_EQ(sut.carried.model.effects[0].kind, "coupled_input");
   EXPECT_NEAR(sut.carried.model.body.numerators[0][0], 2.0, 0.01) << "as without bursts";
   EXPECT_GT(std::abs(sut.studied.baseline.model.body.numerators[0][0] - 2.0), 0.05);
+}
+
+// y = 2 u + c v, c = 1, 2 and 4 in the thirds, u and v square waves of 50 and 25 Hz; 1900, 2000 and
+// 2000 samples count.  A fit to the others has their mean, m.  Of a residual c v the effect
+// explains m v: in the first third, where m = 3 c, a share s is harmless with 3 s - 1 = 1.05.
+TEST(PartsOutTest, EachThirdIsPredictedByAFitToTheOthers) {
+  const Eigen::Array3d rows(1900.0, 2000.0, 2000.0);
+  const Eigen::Array3d c(1.0, 2.0, 4.0);
+  const Eigen::Array3d m(3.0, 9900.0 / 3900.0, 5900.0 / 3900.0);
+  std::vector<double> u, v, y;
+  for (std::size_t n = 0; n < kCount; ++n) {
+    u.push_back(n % 2 == 0 ? 1.0 : -1.0);
+    v.push_back(n % 4 < 2 ? 1.0 : -1.0);
+    y.push_back(2.0 * u[n] + c(static_cast<Eigen::Index>(n / 2000)) * v[n]);
+  }
+  const Signals signals(made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}}), {"u"},
+                        "y");
+  const Model bare = made::model_of({{{1.0}}, {1.0}, 0.0});
+  const Model with = made::model_of(bare.body, {{"coupled_input", "static", {"v"}, {}, {1.0}}});
+  const PartsOut sut(with, signals, make_blocks(signals), made::column_of(made::white(kCount, 1)),
+                     1.0, 5);
+  const OutOfParts left = sut.left_by(with);
+  for (const int n : {100, 1999, 2000, 3999, 4000, 5999}) {
+    EXPECT_NEAR(left.residual[n], (c - m)(n / 2000) * (n % 4 < 2 ? 1.0 : -1.0), 1e-6) << n;
+  }
+  EXPECT_NEAR(sut.rmse(with), std::sqrt((rows * (c - m).square()).sum() / 5900.0), 1e-6);
+  const HeldOut started = sut.from_start(with);
+  EXPECT_NEAR(started.squares[10], 195.0 * std::pow(c(1) - m(1), 2), 1e-3) << "five give the start";
+  EXPECT_EQ(started.weights[0], 100.0);
+  const OutOfParts without = sut.left_by(bare);
+  EXPECT_NEAR(sut.share(without, left).estimate, (rows * c * m).sum() / (rows * m * m).sum(), 1e-6);
+  EXPECT_NEAR(sut.share(without, left).harmless, 2.05 / 3.0, 1e-6);
+  EXPECT_EQ(sut.share({}, left).estimate, 1.0) << "without it the model runs away";
+  EXPECT_NEAR(sut.slow_share(without, left), 0.5, 0.002) << "means of two samples of v";
+}
+
+// y(n) = 0.9 y(n-1) + 0.2 u(n-1), begun at x: x 0.9^n more.  Of a unit spread times f, 20 rows with
+// noise of variance sum 0.81^n give f^2/(f^2 + 1) x, and f is the one of 1, 3, 10 and 30 that makes
+// ln(f^2 + 1) + x^2/(f^2 + 1) the least.
+TEST(MostLikelyStartTest, AStateIsDrawnToNoneByTheNoiseOverItsSpread) {
+  const Model model = made::model_of({{{0.0, 0.2}}, {1.0, -0.9}, 0.0});
+  const auto u = made::white(200, 1);
+  const Signals signals = made::signals_of(u, u);
+  const Answer answer = [&](const Signals& each) { return free_run(model, each).prediction; };
+  const double noise = std::sqrt((1.0 - std::pow(0.81, 20)) / 0.19);
+  for (const auto& [x, f] : {std::pair{1.0, 1.0}, {-4.0, 3.0}, {12.0, 10.0}, {-20.0, 30.0}}) {
+    GivenRows rows(1);
+    auto measured = answer(started(model, signals, Eigen::MatrixXd::Zero(1, 1)));
+    for (std::size_t n = 0; n < 20; ++n) {
+      rows[0].push_back(n);
+      measured[n] += x * std::pow(0.9, n);
+    }
+    const Eigen::MatrixXd sut = most_likely_start(model, signals, Eigen::MatrixXd::Ones(1, 1),
+                                                  measured, rows, noise, answer);
+    EXPECT_NEAR(sut(0, 0), f * f / (f * f + 1.0) * x, 1e-9);
+  }
 }
 
 }  // namespace stillhand::diagnosis::carried_test
