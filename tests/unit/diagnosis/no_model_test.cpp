@@ -70,18 +70,27 @@ TEST(NoModelTest, ABinaryInputIsNoSensorAtItsLimit) {
   EXPECT_EQ(limit_in_words("a_y", input, "f", output, 100.0), "");
 }
 
-// p from -2 to 2 in even steps: below -1 lie 2/8 of it, above 1.5 1/8.  Gains are 5 % apart.
+// y = 2 p + 0.5 for p from -1.7 to 2.3, cut off at c below the middle, 1.1, and 1.1 c above it; the
+// middle half is free.  For one c the line through it has a gain of 2/1.05^4: from there the gains
+// that are tried meet 2.
 TEST(NoModelTest, ALimitIsThatOfAPredictionCutOff) {
-  std::vector<double> p, y;
-  for (int i = 0; i <= 400; ++i) {
-    p.push_back(-2.0 + 0.01 * i);
-    y.push_back(std::clamp(2.0 * p.back() + 0.5, -1.5, 3.5));
+  std::vector<double> p, y(401);
+  for (int i = 0; i <= 400; ++i) p.push_back(-1.7 + 0.01 * i);
+  double less = 2.0;
+  double more = 3.6;
+  while (more - less > 1e-13) {
+    const double c = 0.5 * (less + more);
+    for (std::size_t n = 0; n < y.size(); ++n) {
+      y[n] = std::clamp(2.0 * p[n] + 0.5, 1.1 - c, 1.1 + 1.1 * c);
+    }
+    (likeness(p, y).gain < 2.0 / std::pow(1.05, 4) ? less : more) = c;
   }
   const Limit sut = limit_of(y, p);
-  EXPECT_NEAR(sut.low, -1.5, 0.05);
-  EXPECT_NEAR(sut.high, 3.5, 0.05);
-  EXPECT_NEAR(sut.share, 0.375, 0.03);
-  EXPECT_LT(sut.error_ratio, 0.05);
+  EXPECT_NEAR(sut.low, 1.1 - less, 1e-9);
+  EXPECT_NEAR(sut.high, 1.1 + 1.1 * less, 1e-9);
+  EXPECT_NEAR(sut.error_ratio, 0.0, 1e-9);
+  const auto beyond = std::ranges::count(y, y.front()) + std::ranges::count(y, y.back());
+  EXPECT_DOUBLE_EQ(sut.share, static_cast<double>(beyond) / 401.0);
 }
 
 // A ride that its sensor cuts off at 1 and 3 deviations, behind noise: 32 % and 0.3 % lie beyond.
@@ -293,6 +302,8 @@ TEST(AlignmentTest, ALineHasItsGainAndItsShare) {
   const auto& [gain, share] = likeness({1.0, -1.0, 1.0, -1.0}, {9.0, 3.0, 7.0, 1.0});
   EXPECT_DOUBLE_EQ(gain, 3.0);
   EXPECT_DOUBLE_EQ(share, 0.9);
+  EXPECT_EQ(likeness({1.0, 1.0}, {1.0, 2.0}).share, 0.0);
+  EXPECT_EQ(likeness({1.0, 2.0}, {1.0, 1.0}).share, 0.0);
 }
 
 }  // namespace stillhand::diagnosis::no_model_test
