@@ -107,16 +107,6 @@ TEST(DetectionLinesTest, AGroupIsComparedWithTheLinesAroundItsOwn) {
   EXPECT_EQ(lines_at(1.01 * level).even.p, 1.0);
 }
 
-// A sine of RMS 1 squared is 1 - cos(2 .): one line of RMS 1/sqrt 2.
-TEST(DetectionLinesTest, TheLevelOfALineIsItsRms) {
-  const DetectionLines sut =
-      lines_of({7}, 4, white(4, 5, 1e-3), [](double u) { return 0.05 * u * u; });
-  ASSERT_FALSE(sut.even.empty());
-  EXPECT_NEAR(sut.even.frequency_hz.front(), 1.4, 1e-12);
-  EXPECT_NEAR(sut.even.residual.front(), 0.05 / std::sqrt(2.0), 2e-4);
-  EXPECT_NEAR(sut.even.share, 1.0, 0.01);
-}
-
 TEST(DetectionLinesTest, WhereEvenLinesAreExcitedTheOrdersAreNotToldApart) {
   const DetectionLines sut =
       lines_of(kAll, 4, white(4, 6, 0.05), [](double u) { return 0.05 * u * u; });
@@ -163,14 +153,6 @@ TEST(DetectionLinesTest, ADriftOrAToneBetweenTheLinesIsNoDistortion) {
     EXPECT_GT(sut.odd.p, 0.01);
     EXPECT_GT(sut.even.p, 0.01);
   }
-}
-
-// A converter's steps repeat with the excitation; 1e-4 of the output are nothing.
-TEST(DetectionLinesTest, StepsOfAConverterAreNoEffect) {
-  const DetectionLines sut = lines_of(kOdd, 4, white(4, 9, 1e-7),
-                                      [](double u) { return std::round(u * 5000.0) / 5000.0 - u; });
-  EXPECT_EQ(sut.odd.p, 1.0);
-  EXPECT_EQ(sut.even.p, 1.0);
 }
 
 }  // namespace stillhand::diagnosis::detection_lines_test

@@ -34,15 +34,6 @@ TEST(ShareTest, TheStandardErrorIsThatOverTheBlocksOrThePartsTheLargerOne) {
   EXPECT_EQ(share_of(d, 0.0 * d, {1, 4, 2, {0, 0, 1, 1}}).earned(), 0.0) << "no difference";
 }
 
-TEST(ShareTest, WhatOnePartContradictsIsUncertain) {
-  // -1, 1 and 1: a mean of 1/3 with a standard error of 2/3.
-  const Share sut =
-      share_of(Eigen::Vector3d(-1.0, 1.0, 1.0), Eigen::Vector3d::Ones(), {1, 3, 3, {0, 1, 2}});
-  EXPECT_DOUBLE_EQ(sut.estimate, 1.0 / 3.0);
-  EXPECT_DOUBLE_EQ(sut.std_error, 2.0 / 3.0);
-  EXPECT_EQ(sut.earned(), 0.0);
-}
-
 // Two parts of three are ten times as large and want all of it; the third wants none, and its error
 // is 1 where the effect adds 1: 1 + s^2 <= 1.05^2.
 TEST(ShareTest, NoPartIsMadeWorseByMoreThanATwentieth) {

@@ -113,11 +113,4 @@ TEST(SurrogatesTest, EachHasTheShareOfAResidualThatIsIt) {
   }
 }
 
-TEST(SurrogatesTest, WhatAChannelExplainsItDoesNotExplainOfSurrogates) {
-  const made::Studied of(made::with_another_channel(kCount), 2);
-  const SurrogateShares sut = shares_of(of, {of.signals.at("v").values});
-  EXPECT_GT(sut.own, 0.9);
-  EXPECT_LT(sut.surrogates.maxCoeff(), 0.02);
-}
-
 }  // namespace stillhand::diagnosis::surrogates_test
