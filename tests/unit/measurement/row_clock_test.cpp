@@ -117,18 +117,6 @@ TEST(RowClockTest, OneLateRowDoesNotMoveTheOthers) {
   EXPECT_EQ(sut.stretches[0].grid_samples, 400u);
 }
 
-// 100 ppm more for the second half: 25 periods off the best straight line after 10^6 rows.
-TEST(RowClockTest, AClockThatWandersIsFollowed) {
-  std::vector<double> time_s{0.0};
-  for (int i = 1; i < 1'000'000; ++i)
-    time_s.push_back(time_s.back() + (i < 500'000 ? 1.0 : 1.0001) * 1e-3);
-  const RowPlaces sut = place_rows(at(time_s));
-  EXPECT_TRUE(sut.as_stamped);
-  EXPECT_EQ(sut.stretches.size(), 1u);
-  // The mean rate: as many samples as rows, to a sample.
-  EXPECT_NEAR(static_cast<double>(sut.stretches[0].grid_samples), 1e6, 60.0);
-}
-
 TEST(RowClockTest, AShortGapIsCountedAndALongOneCuts) {
   std::vector<double> time_s;
   for (int i = 0; i < 1000; ++i) {

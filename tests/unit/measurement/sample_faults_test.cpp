@@ -232,6 +232,43 @@ TEST(SampleFaultsTest, SpikesAreBeyondTheRangeFewAndAlone) {
   EXPECT_FALSE(found(202.0, 191, 191));
 }
 
+// ME-9: a triangle in steps of 1 between 0 and a top, and a rest of it with one step in and out.
+TEST(SampleFaultsTest, AChannelIsStuckThatStopsUnlikeItself) {
+  struct Rest {
+    int rows = 30, first = 106, total = 600, top = 40, digits = 1, level = 0;
+    double out = 1.0, slow = 1.0, digit = 0.0, rate_hz = 100.0;
+  };
+  const auto stuck = [](double in, const Rest& rest) {
+    double at = 0.0;
+    int moved = 0;
+    Rows x = made(rest.total, [&](int i) {
+      const int into = i - rest.first;
+      if (into > 0 && into < rest.rows) return at + rest.digit * (into % rest.digits);
+      const double before = into > -6 && into < 0 ? rest.slow : 1.0;
+      const double size = into == 0 ? in : into == rest.rows ? rest.out : before;
+      return at += moved++ / rest.top % 2 == 0 ? size : -size;
+    });
+    for (int k = 0; k < rest.level; ++k) x.at(300 + k) = x.at(106);
+    return stuck_in(x, rest.rate_hz, [](const Place&) { return true; }).has_value();
+  };
+  for (const bool is : {true, false}) {
+    for (const double sign : {1.0, -1.0}) EXPECT_EQ(stuck(is ? sign * 4.0 : sign * 3.9, {}), is);
+    EXPECT_EQ(stuck(1.0, {.out = is ? 4.0 : 3.9}), is);
+    EXPECT_EQ(stuck(4.0, {.rows = is ? 20 : 19}), is);
+    EXPECT_EQ(stuck(4.0, {.rows = is ? 10 : 9, .rate_hz = 40.0}), is);
+    EXPECT_EQ(stuck(4.0, {.rows = is ? 30 : 29, .level = 3}), is) << "ten of the other's rows";
+    EXPECT_EQ(stuck(4.0, {.first = is ? 6 : 5}), is);
+    EXPECT_EQ(stuck(4.0, {.slow = is ? 0.25 : 0.1875}), is);
+    EXPECT_EQ(stuck(1.0, {.rows = 999, .total = is ? 530 : 531}), is) << "106 rows that move";
+    EXPECT_EQ(stuck(1.0, {.rows = is ? 100 : 99}), is) << "a second";
+    EXPECT_EQ(stuck(1.0, {.rows = 100, .level = is ? 2 : 3}), is) << "at another rest's value";
+    EXPECT_EQ(stuck(1.0, {.total = is ? 136 : 137}), is) << "to the end";
+    EXPECT_EQ(stuck(1.0, {.top = is ? 5 : 8}), is) << "deviations of 1.6 and 2.6";
+    EXPECT_EQ(stuck(4.0, {.digits = is ? 5 : 6, .digit = 1.0 / 64.0}), is);
+  }
+  EXPECT_FALSE(stuck(4.0, {.digits = 5, .digit = 1.0 / 32.0}));
+}
+
 // ME-10: runs of 10, some behind a 9, over other values.
 TEST(SampleFaultsTest, AClippedChannelHasRunsOfManyLengthsAtItsEnd) {
   // @param runs  their rows; below 0: not behind a 9
