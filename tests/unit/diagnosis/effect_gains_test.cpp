@@ -120,13 +120,6 @@ TEST(EffectGainsTest, AClockDriftIsCountedFromItsReferenceTime) {
   EXPECT_DOUBLE_EQ(kind.input_delay_s(sut, 10.0), -0.01);
 }
 
-TEST(EffectGainsTest, ADelayIsTheSameAtAllTimes) {
-  const Effect sut{"delay", "of the input", {}, {{"delay", "s", 0.125}}, {}};
-  for (const double t_s : {-5.0, 0.0, 1e6}) {
-    EXPECT_EQ(effect_kind("delay").input_delay_s(sut, t_s), 0.125);
-  }
-}
-
 // Eq. DG-68.
 TEST(EffectGainsTest, AnEffectActsWithItsShare) {
   Effect late{"delay", "of the input", {}, {{"delay", "s", 0.125}}, {}};

@@ -201,13 +201,6 @@ TEST(EffectMapsTest, ASofteningCubicStaysAtItsHighestValue) {
   }
 }
 
-TEST(EffectMapsTest, ACubicOfNothingIsTheIdentity) {
-  for (const double y : values(50, 1e6, 5)) {
-    EXPECT_EQ(mapped(cubic(0.0), y), y);
-    EXPECT_EQ(slope(cubic(0.0), y), 1.0);
-  }
-}
-
 TEST(EffectMapsTest, TheFormSaysWhereAMapActs) {
   const auto stage = [](const Effect& effect) { return effect_kind(effect.kind).stage(effect); };
   EXPECT_EQ(stage(play("at the input", 0.1)), Stage::kInputValue);

@@ -46,11 +46,6 @@ TEST(EffectsOfSpringsTest, ASpringThatHardens) {
                   {{0, size(), 0.75 * size(), 0.1 * size()}});
 }
 
-TEST(EffectsOfSpringsTest, ACubicSpring) {
-  expect_proposed(planted("nonlinear_stiffness", "cubic of the output",
-                          with_spring(-0.01 * size(), size(), [](double z) { return z * z * z; })));
-}
-
 TEST(EffectsOfSpringsTest, ASpringThatIsStifferOnOneSide) {
   expect_proposed(
       planted("asymmetry", "slopes of the output",

@@ -55,6 +55,19 @@ TEST(StabilityTest, WhatTheCriterionDoesNotHoldForIsTested) {
   }
 }
 
+// 1 - p q^-1 with p = 0.5 beyond the play and 0.5 + e_0 within it: of one pole the two responses
+// are less than a right angle apart at each frequency where both poles lie within the unit circle.
+TEST(StabilityTest, OfOnePoleTheCriterionIsThatBothBodiesAreStable) {
+  for (const auto& [e0, proved] :
+       {std::pair{0.45, true}, {0.55, false}, {-1.45, true}, {-1.55, false}}) {
+    Model sut = made::model_of(
+        {{{0.0, 1.0}}, {1.0, -0.5}},
+        {{"dead_zone", "play of the output", {}, {{"threshold", "N", 1.0, 1e-3, 1e3}}, {e0}}});
+    note_seen(sut, signals_of());
+    EXPECT_EQ(stability_of(sut, signals_of()) == Stability::kProved, proved) << e0;
+  }
+}
+
 // x y* at line k: each line keeps its size, and two signals their angle to each other.
 std::complex<double> shared(const std::vector<double>& x, const std::vector<double>& y, int k) {
   const double hz = k * made::kRateHz / static_cast<double>(x.size());

@@ -200,6 +200,27 @@ TEST(TriedValuesTest, ADelayIsRefinedFromTheBestThatWasTried) {
   }
 }
 
+// Eq. DG-38: of two modes of a body with four poles the one that explains less; the other is the
+// body that it stood next to.
+TEST(TriedValuesTest, AModeBetweenTheTriedOnesIsTakenOutOfALargerBody) {
+  const Effect truth =
+      made::effect_of("resonance", "beside the body", {},
+                      {{"frequency", "Hz", 6.1}, {"damping_ratio", "-", 0.07}}, {0.02, -0.01});
+  const Signals signals = output_of(truth);
+  const Model model = made::model_of(made::two_pole_body());
+  const Blocks blocks = make_blocks(signals);
+  const ImpulseResponse none;
+  const auto sut = effect_kind("resonance").proposed(Screening(model, signals, blocks, none));
+  ASSERT_EQ(sut.size(), 2u);
+  EXPECT_GT(sut[1].gain, 0.9999);
+  EXPECT_NEAR(sut[1].effect.value(0), 6.1, 1e-3);
+  EXPECT_NEAR(sut[1].effect.value(1), 0.07, 1e-4);
+  for (std::size_t i : {0, 1}) {
+    EXPECT_NEAR(sut[1].effect.coefficients[i], truth.coefficients[i], 1e-4);
+    EXPECT_NEAR(sut[1].body->denominator[i + 1], model.body.denominator[i + 1], 1e-4);
+  }
+}
+
 // Five periods of the record's 20 s at least, 0.48 of the rate at most; over a position 1.5 periods
 // of its 2 rad, and three samples a period at the median speed of 0.01 rad a sample.
 TEST(TriedValuesTest, ALineIsSoughtWhereItCanBeTold) {
