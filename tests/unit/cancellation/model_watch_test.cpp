@@ -52,7 +52,7 @@ Found watch(
     double seconds, const std::function<double(Tick)>& gain,
     const std::function<void(ModelWatch::Input&)>& spoil = [](auto&) {}) {
   Hand hand(seconds);
-  ModelWatch sut(0.1);
+  ModelWatch sut(0.1, kStiffer);
   Found found;
   for (Tick tick = 0; tick < hand.ticks(); ++tick) {
     ModelWatch::Input input = hand.at(tick, gain(tick));
@@ -82,9 +82,7 @@ TEST(ModelWatchTest, FindsAChangeSinceWhenItIsAndHowLarge) {
   // Blocks of 4 s: the change may begin within one, and the CUSUM leaves zero a few before or
   // after.
   EXPECT_NEAR(static_cast<double>(found.change.since), 120'000.0, 16'000.0);
-  // By the compliance of the average hand, which is a third more than this one's.
-  EXPECT_GT(found.change.share, 0.25);
-  EXPECT_LT(found.change.share, 0.9);
+  EXPECT_NEAR(found.change.share, 1.5 - 0.9, 0.06);
 }
 
 TEST(ModelWatchTest, WatchesOnlyWhileTheMotorCancels) {
