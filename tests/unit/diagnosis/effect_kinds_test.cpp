@@ -32,8 +32,7 @@ TEST(EffectKindsTest, AKindThatIsNotThereIsRefused) {
 }
 
 // A recording with several channels of every quantity, no effect in it: whatever a kind proposes
-// must be ready to be fitted, which takes time: so it proposes few.  Three want to see something
-// first.
+// must be ready to be fitted; three want to see something first.
 TEST(EffectKindsTest, EveryProposalCanBeRunAndFitted) {
   const auto u = made::ride(kCount, 1);
   const Body body = made::four_pole_body();

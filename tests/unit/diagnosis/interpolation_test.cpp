@@ -81,12 +81,6 @@ TEST(InterpolationTest, TheErrorHalfwayIsThatOfLagrangesPolynomial) {
   EXPECT_NEAR(halfway_error(12.5), 1.1e-3, 0.1e-3);
 }
 
-TEST(InterpolationTest, ADelayMayChangeWithTime) {
-  // 2000 ppm about the middle: up to 0.4 samples.
-  const auto drift = [](double t_s) { return 2e-3 * (t_s - 2.0); };
-  EXPECT_LE(largest_error(5.0, drift), halfway_error(5.0) + 1e-12);
-}
-
 // Six points hold a polynomial of degree five: exact but for rounding, weights of at most 1 each.
 TEST(InterpolationTest, AQuinticIsReproduced) {
   const auto quintic = [](double t_s) {
