@@ -165,6 +165,8 @@ TEST(AxisLayoutTest, LimitsThatMakeNoAxisAreOpenedUp) {
   EXPECT_DOUBLE_EQ(crossed.low, 5.4);  // a tenth about their centre
   EXPECT_DOUBLE_EQ(crossed.high, 6.6);
   const Axis logarithmic{.scale = Scale::kLogarithmic};
+  EXPECT_EQ(horizontal(logarithmic, 1.0, 0.0).low, 0.1);  // of no values
+  EXPECT_EQ(horizontal(logarithmic, 1.0, 0.0).high, 10.0);
   // A limit that it cannot show is none; 3 decades below the largest, or a factor of 4 about 0.1.
   EXPECT_EQ(horizontal({.scale = Scale::kLogarithmic, .low = 0.0}, 1.0, 100.0).low, 1.0);
   EXPECT_DOUBLE_EQ(horizontal(logarithmic, -1.0, 5.0).low, 0.005);

@@ -296,4 +296,23 @@ TEST(MarksScriptTest, NotesStandInTheirCornersOrAtTheirPoints) {
   sut.compare(note_script);
 }
 
+// From x = 200 in the row of y = 300: 24 px for the mark, 30 to the text.
+TEST(MarksScriptTest, ALegendShowsAMarkOfEachKind) {
+  Marked sut;
+  const auto add = [&](Kind kind, const std::vector<double>& mark) {
+    sut.layout.entries.push_back({sut.panel.series.size(), 200.0, 300.0});
+    sut.panel.series.push_back(Series{.label = "series", .kind = kind});
+    sut.expect(mark);
+    sut.expect({230, 300});
+  };
+  add(Kind::kLine, {200, 300, 224, 300});
+  add(Kind::kPoints, {212, 300});
+  add(Kind::kLineAndPoints, {200, 300, 224, 300, 212, 300});
+  add(Kind::kErrorBars, {212, 293, 212, 307, 212, 300});
+  add(Kind::kBand, {200, 305, 224, 295});
+  add(Kind::kBars, {205, 305, 219, 295});
+  add(Kind::kBox, {205, 305, 219, 295});
+  sut.compare(legend_script);
+}
+
 }  // namespace stillhand::report::panel_layout_test
