@@ -131,24 +131,24 @@ TEST(PageLayoutTest, EachPartHasItsPlaceSizeAndGrey) {
   page.steps = page.chosen = 2;
   page.button = "OK";
   page.button_works = false;
-  page.hint = "hint";
-  page.rig = std::string(80, 'r');
+  page.hint = std::string(80, 'h');
+  page.rig = "rig";
   const std::vector<std::vector<double>> expected{
-      // x, share of the text left of it, baseline, em, grey
-      {0.0, 0.5, 0.3076, 0.056, 255.0},                // heading
-      {0.0, 0.5, 0.2126, 0.036, 255.0},                // one
-      {0.0, 0.5, 0.1478, 0.036, 255.0},                // two, 0.8 em below it
-      {-0.0567, 0.5, 0.03046, 0.036, 255.0},           // 1
-      {0.0567, 0.5, 0.03046, 0.036, 0.0},              // 2, black in its box
-      {-0.0987, 0.0, -0.0374, 0.03, 255.0},            // low: from the first box's left side
-      {0.1872, 1.0, -0.0374, 0.03, 255.0},             // higher: as far as it is long
-      {0.0, 0.5, -0.15354, 0.036, 90.0},               // OK
-      {0.0, 0.5, -0.2554, 0.03, 150.0},                // caption
-      {0.0, 0.5, -0.3452, 0.036, 255.0},               // below
-      {-0.765, 0.0, 0.4442, 0.026, 150.0},             // left corner
-      {0.765, 1.0, 0.4442, 0.43 * 1.6 / 41.6, 150.0},  // right, not beyond 0.43 of the width
-      {0.0, 0.5, -0.465, 0.026, 150.0},                // hint
-      {0.0, 0.5, -0.492, 0.86 * 1.6 / 83.2, 150.0}};   // rig, not beyond 0.86
+      // x, share of the text left of it, baseline, em, grey, bold
+      {0.0, 0.5, 0.3076, 0.056, 255.0, 1.0},                // heading
+      {0.0, 0.5, 0.2126, 0.036, 255.0, 0.0},                // one
+      {0.0, 0.5, 0.1478, 0.036, 255.0, 0.0},                // two, 0.8 em below it
+      {-0.0567, 0.5, 0.03046, 0.036, 255.0, 1.0},           // 1
+      {0.0567, 0.5, 0.03046, 0.036, 0.0, 1.0},              // 2, black in its box
+      {-0.0987, 0.0, -0.0374, 0.03, 255.0, 0.0},            // low: from the first box's left side
+      {0.1872, 1.0, -0.0374, 0.03, 255.0, 0.0},             // higher: as far as it is long
+      {0.0, 0.5, -0.15354, 0.036, 90.0, 1.0},               // OK
+      {0.0, 0.5, -0.2554, 0.03, 150.0, 0.0},                // caption
+      {0.0, 0.5, -0.3452, 0.036, 255.0, 0.0},               // below
+      {-0.765, 0.0, 0.4442, 0.026, 150.0, 0.0},             // left corner
+      {0.765, 1.0, 0.4442, 0.43 * 1.6 / 41.6, 150.0, 0.0},  // right, not beyond 0.43 of the width
+      {0.0, 0.5, -0.465, 0.86 * 1.6 / 83.2, 150.0, 0.0},    // hint, not beyond 0.86 of it
+      {0.0, 0.5, -0.492, 0.0245, 150.0, 0.0}};              // rig
   const PageLayout sut = lay_out(page, screen, wide);
   const auto near = [](const std::vector<double>& numbers) {
     return testing::Pointwise(testing::DoubleNear(1e-9), numbers);
@@ -156,7 +156,8 @@ TEST(PageLayoutTest, EachPartHasItsPlaceSizeAndGrey) {
   ASSERT_EQ(sut.texts.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const PlacedText& each = sut.texts[i];
-    EXPECT_THAT((std::vector{each.x_m, each.share, each.baseline_m, each.em_m, each.grey}),
+    EXPECT_THAT((std::vector{each.x_m, each.share, each.baseline_m, each.em_m, each.grey,
+                             each.bold ? 1.0 : 0.0}),
                 near(expected[i]))
         << each.text;
   }
@@ -185,9 +186,10 @@ TEST(PageLayoutTest, AScaleCanBeClickedBoxByBox) {
   std::vector<std::int64_t> values;
   for (const PlacedBox& box : sut.boxes) {
     values.push_back(box.value);
-    EXPECT_EQ(sut.box_at((box.area.left_m + box.area.right_m) / 2,
-                         (box.area.bottom_m + box.area.top_m) / 2),
-              box.value);
+    const auto& [left_m, right_m, bottom_m, top_m] = box.area;
+    EXPECT_EQ(sut.box_at(left_m, bottom_m), box.value);
+    EXPECT_NE(sut.box_at(right_m, bottom_m), box.value);
+    EXPECT_NE(sut.box_at(left_m, top_m), box.value);
   }
   EXPECT_NEAR(sut.boxes[0].area.left_m, -sut.boxes[8].area.right_m, 1e-12);
   EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, kButton));
