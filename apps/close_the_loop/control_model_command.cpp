@@ -66,7 +66,7 @@ std::string summary_of(const ConvertedModel& control) {
 void require_diagnosed(const ControlModelArguments& arguments, const std::string& model) {
   const auto origin = report::provenance_in(model);
   if (!origin || !std::filesystem::is_regular_file(arguments.recording)) return;
-  const std::string digest = rig::sha256_of_file(arguments.recording);
+  const std::string digest = digest::sha256_of_file(arguments.recording);
   std::string names;
   for (const report::SourceFile& source : origin->sources) {
     if (source.sha256.empty() || source.sha256 == digest) return;
@@ -86,7 +86,7 @@ int run(const ControlModelArguments& arguments) {
   const std::string text = recording::read_file(arguments.model.string());
   const diagnosis::CarriedModel carried =
       diagnosis::parse_carried_model(text, arguments.model.string());
-  rig::require_as_written(text, arguments.model.string());
+  digest::require_as_written(text, arguments.model.string());
   require_diagnosed(arguments, text);
   const diagnosis::Model& model = carried.in_session;
   const diagnosis::Measurement whole =

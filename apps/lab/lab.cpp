@@ -154,7 +154,7 @@ LiveSession run_session(const LabOptions& asked_options, runtime::Stop& stop,
                                options.config, options.task);
     }
     if (options.undeclared_effect != 0) {
-      live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});
+      live.sealed = rig::text_of({options.undeclared_effect, digest::new_nonce()});
     }
     hosts.open(stop);
     run_processes(options, asked, hosts, stop, script, live, recorded);

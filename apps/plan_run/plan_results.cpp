@@ -133,7 +133,7 @@ std::string plan_json(const Planned& planned) {
                     {"probability_repeated", planned.plan.probability_repeated},
                     {"longer", longer_json(planned)},
                     {"ride", next_run::kRideName},
-                    {"ride_sha256", rig::sha256(ride_csv(planned.plan.ride))},
+                    {"ride_sha256", digest::sha256(ride_csv(planned.plan.ride))},
                     {"motion", motion_json(planned)},
                     {"limits", limits_json(planned)},
                     {"designs_tried", planned.plan.tried},

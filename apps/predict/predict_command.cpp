@@ -45,7 +45,7 @@ Models read_models(const std::filesystem::path& path) {
   const std::string text = recording::read_file(path.string());
   Models models{diagnosis::parse_carried_model(text, path.string()),
                 diagnosis::parse_linear_model(text, path.string()), report::provenance_in(text)};
-  rig::require_as_written(text, path.string());
+  digest::require_as_written(text, path.string());
   return models;
 }
 

@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 
 void seal(StudyRecord& record) {
   if (record.options.undeclared_effect == 0) return;
-  record.sealed = rig::sealed_text(sealed_effect(record.options).open(), rig::new_nonce());
-  fmt::print("undeclared effect sealed, sha256 {}\n", rig::sha256(record.sealed));
+  record.sealed = rig::sealed_text(sealed_effect(record.options).open(), digest::new_nonce());
+  fmt::print("undeclared effect sealed, sha256 {}\n", digest::sha256(record.sealed));
 }
 
 // Runs `work(on_progress)` with a progress line and adds its time.

@@ -56,8 +56,8 @@ TrialRun run_alone(const SimulatedRig& rig, std::uint64_t seed,
 }
 
 InProcessSession::InProcessSession(const SimulatedRig& rig, std::uint64_t seed)
-    : sealed_(rig::sealed_text(effect_of(rig).open(), rig::new_nonce())),
-      commitment_(rig::digest_line(sealed_, rig::kSealedFile)),
+    : sealed_(rig::sealed_text(effect_of(rig).open(), digest::new_nonce())),
+      commitment_(digest::digest_line(sealed_, rig::kSealedFile)),
       loop_(rig.configs, seed, kKeepEvery, effect_of(rig)) {
   loop_.keep_measured();
 }

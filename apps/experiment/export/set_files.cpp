@@ -12,12 +12,12 @@ namespace stillhand::experiment {
 void SetFiles::write(const std::string& name, const std::string& text) {
   std::filesystem::create_directories((out_.path() / name).parent_path());
   out_.write(name, text);
-  lines_.emplace_back(name, rig::digest_line(text, name));
+  lines_.emplace_back(name, digest::digest_line(text, name));
 }
 
 void SetFiles::add(const std::string& name) {
   const std::string bytes = recording::read_file((out_.path() / name).string());
-  lines_.emplace_back(name, rig::digest_line(bytes, name));
+  lines_.emplace_back(name, digest::digest_line(bytes, name));
 }
 
 void SetFiles::write_sums() {

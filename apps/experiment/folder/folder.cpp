@@ -31,7 +31,7 @@ void refuse_changed_model(const std::filesystem::path& file, const std::string& 
     throw ConfigError(file.string(), "no file",
                       "the model of condition C+, as the first participant had it");
   }
-  const std::string digest = rig::sha256(recording::read_file(file.string()));
+  const std::string digest = digest::sha256(recording::read_file(file.string()));
   if (registered.find(digest_line(digest, name)) != std::string::npos) return;
   if (registered.find("  " + name + "\n") == std::string::npos) {
     throw ConfigError(
@@ -90,7 +90,7 @@ Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
                       "a folder that `stillhand experiment new` made");
   }
   const std::string yaml = with_plain_line_ends(recording::read_file(file.string()));
-  digest_ = rig::sha256(yaml);
+  digest_ = digest::sha256(yaml);
   const std::string registered = recording::read_file((path_ / kDigestFile).string());
   if (!registered.starts_with(digest_) && !participants().empty()) {
     throw ConfigError(file.string(), "SHA-256 " + digest_.substr(0, 12) + "...",
@@ -103,7 +103,7 @@ Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
     refuse_changed_model(path_ / model, model, registered);
   }
   const std::string sealed = recording::read_file((path_ / kSealedFile).string());
-  if (rig::sha256(sealed) != design_.assignment) {
+  if (digest::sha256(sealed) != design_.assignment) {
     throw ConfigError((path_ / kSealedFile).string(), "another content than at the beginning",
                       "the file of this experiment: its SHA-256 is in experiment.yaml");
   }
@@ -203,7 +203,7 @@ void Folder::register_design() const {
   std::string lines = digest_line(digest_, kDesignFile);
   if (const std::string model = design_.model_file(); !model.empty()) {
     const std::string bytes = recording::read_file((path_ / model).string());
-    lines += digest_line(rig::sha256(bytes), model);
+    lines += digest_line(digest::sha256(bytes), model);
   }
   recording::write_file(path_ / kDigestFile, lines);
 }
@@ -222,10 +222,10 @@ void make_folder(const std::filesystem::path& path, Design design, std::uint64_t
   std::filesystem::create_directories(path / "participants", error);
   if (error) throw ConfigError(path.string(), error.message(), "a folder that can be made");
   const std::string sealed = sealed_text(order_seed);
-  design.assignment = rig::sha256(sealed);
+  design.assignment = digest::sha256(sealed);
   const std::string yaml = yaml_of(design);
   recording::write_file(path / kSealedFile, sealed);
-  recording::write_file(path / kDigestFile, digest_line(rig::sha256(yaml), kDesignFile));
+  recording::write_file(path / kDigestFile, digest_line(digest::sha256(yaml), kDesignFile));
   recording::write_file(path / kDesignFile, yaml);  // last: it makes the folder an experiment
 }
 

@@ -32,7 +32,7 @@ std::string bytes_of(const std::string& digits, const std::string& origin) {
 }  // namespace
 
 std::string sealed_text(std::uint64_t order_seed) {
-  const nlohmann::ordered_json json{{"order_seed", order_seed}, {"nonce", rig::new_nonce()}};
+  const nlohmann::ordered_json json{{"order_seed", order_seed}, {"nonce", digest::new_nonce()}};
   std::string digits;
   for (const char c : json.dump()) digits += fmt::format("{:02x}", static_cast<unsigned char>(c));
   return digits + "\n";

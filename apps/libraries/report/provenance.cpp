@@ -60,17 +60,17 @@ Provenance provenance_of_this_call(const std::vector<std::filesystem::path>& sou
   Provenance provenance{kVersion, utc(seconds_now()), command_line(), {}};
   for (const std::filesystem::path& path : sources) {
     const bool plain = std::filesystem::is_regular_file(path);
-    provenance.sources.push_back({path.string(), plain ? rig::sha256_of_file(path) : ""});
+    provenance.sources.push_back({path.string(), plain ? digest::sha256_of_file(path) : ""});
   }
   return provenance;
 }
 
 std::string with_provenance(std::string_view json, const Provenance& provenance) {
   ordered_json whole = ordered_json::parse(json);
-  whole.erase(rig::kProvenance);
+  whole.erase(digest::kProvenance);
   ordered_json entry = json_of(provenance);
-  entry[rig::kContentDigest] = rig::content_digest(whole);
-  whole[rig::kProvenance] = std::move(entry);
+  entry[digest::kContentDigest] = digest::content_digest(whole);
+  whole[digest::kProvenance] = std::move(entry);
   return whole.dump(2) + "\n";
 }
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "services/core/contract/expects.hpp"
+#include "services/core/signal/moments.hpp"
 #include "services/core/statistics/descriptive.hpp"
 
 namespace stillhand::study {
@@ -64,20 +65,6 @@ bool means_hold(const TableVector& z, const TableVector& z_alone) {
     if (off > most) return false;
   }
   return true;
-}
-
-double correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  const double mean_x = statistics::mean(x);
-  const double mean_y = statistics::mean(y);
-  double xx = 0.0;
-  double yy = 0.0;
-  double xy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mean_x) * (x[i] - mean_x);
-    yy += (y[i] - mean_y) * (y[i] - mean_y);
-    xy += (x[i] - mean_x) * (y[i] - mean_y);
-  }
-  return xy / std::sqrt(xx * yy);
 }
 
 class Ranking {
@@ -231,11 +218,11 @@ SignatureValues signatures_of(const std::vector<Response>& first,
     delay.push_back(1000.0 * seen.counterforce_delay_s);
   }
   using statistics::standard_deviation;
-  return {correlation(gain, again),
-          correlation(f_c, f_c_again),
-          correlation(gain, cancelled),
-          correlation(f_c, place),
-          correlation(c, b),
+  return {signal::correlation(gain, again),
+          signal::correlation(f_c, f_c_again),
+          signal::correlation(gain, cancelled),
+          signal::correlation(f_c, place),
+          signal::correlation(c, b),
           standard_deviation(log_force),
           standard_deviation(delay),
           standard_deviation(c) / standard_deviation(b)};

@@ -16,9 +16,9 @@ std::optional<Registration> registration_of(const std::vector<std::filesystem::p
     const std::filesystem::path file = folder / experiment::kDesignFile;
     if (!std::filesystem::is_regular_file(file)) continue;
     const std::string yaml = recording::read_file(file.string());
-    if (rig::sha256(yaml) != digest) {
+    if (digest::sha256(yaml) != digest) {
       throw ConfigError(
-          file.string(), "SHA-256 " + rig::sha256(yaml).substr(0, 12) + "...",
+          file.string(), "SHA-256 " + digest::sha256(yaml).substr(0, 12) + "...",
           digest.substr(0, 12) + "..., which the recordings state: the pre-registration changed");
     }
     const experiment::Design design = experiment::design_of(yaml, file.string());

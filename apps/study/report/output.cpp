@@ -125,7 +125,7 @@ void write_study(const StudyRecord& record, report::StagedFolder& folder) {
   if (record.recorded) write_participants(record, folder);
   folder.write("summary.json", summary_json(record));
   if (!record.sealed.empty()) {
-    folder.write(rig::kCommitmentFile, rig::digest_line(record.sealed, rig::kSealedFile));
+    folder.write(rig::kCommitmentFile, digest::digest_line(record.sealed, rig::kSealedFile));
     folder.write(rig::kSealedFile, record.sealed);
   }
   folder.publish(every_name(folder));

@@ -15,6 +15,7 @@
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/parts_out.hpp"
 #include "services/core/diagnosis/working_set.hpp"
+#include "services/core/signal/moments.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -29,21 +30,13 @@ constexpr double kSameChannel = 0.95;
 // leaves, which freer poles imitate (the shaking table of RESULTS: 0.92).
 constexpr double kWorthSlowPoles = 0.5;
 
-double correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  const Eigen::Map<const Eigen::VectorXd> a(x.data(), static_cast<Eigen::Index>(x.size()));
-  const Eigen::Map<const Eigen::VectorXd> b(y.data(), static_cast<Eigen::Index>(y.size()));
-  const Eigen::VectorXd left = a.array() - a.mean();
-  const Eigen::VectorXd right = b.array() - b.mean();
-  return left.dot(right) / std::max(left.norm() * right.norm(), 1e-300);
-}
-
 // Inverse dynamics: one input is the rate of another.
 bool related(const Signals& signals) {
   const auto& inputs = signals.inputs();
   for (const Signal& one : inputs) {
     const std::vector<double> rate = differenced(one.values, signals.stretches());
     for (const Signal& other : inputs) {
-      if (&other != &one && correlation(rate, other.values) > kSameChannel) return true;
+      if (&other != &one && signal::correlation(rate, other.values) > kSameChannel) return true;
     }
   }
   return false;
@@ -124,7 +117,7 @@ void check_excitation(const Signals& signals, const std::string& source) {
       throw ConfigError(source + ", input '" + input.name + "'", "a constant signal",
                         "one that moves: without excitation there is nothing to fit");
     }
-    if (std::abs(correlation(input.values, signals.output().values)) > 1.0 - 1e-12) {
+    if (std::abs(signal::correlation(input.values, signals.output().values)) > 1.0 - 1e-12) {
       throw ConfigError(source + ", output '" + signals.output().name + "'",
                         "the input '" + input.name + "' itself, scaled",
                         "a measured response to it");

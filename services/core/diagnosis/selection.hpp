@@ -39,7 +39,6 @@ struct Trial {
   Model model;
   HeldOut held_out;
   double rmse = 0.0;      ///< held out
-  std::size_t added = 0;  ///< index of the effect that it tried
   bool own_body = false;  ///< it started from a body that was estimated for it
   bool fitted = true;     ///< no: the screening shows that nothing is to be gained
   /// [-] of as large a share of surrogates of the residual, Eq. DG-94; 0: not asked.

@@ -48,7 +48,6 @@ Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, in
   }
   trial.rmse =
       trial.held_out.finite ? trial.held_out.rmse() : std::numeric_limits<double>::infinity();
-  trial.added = model.effects.empty() ? 0 : model.effects.size() - 1;
   trial.model = std::move(model);
   return trial;
 }
@@ -175,7 +174,6 @@ Trial not_fitted(Model model) {
   Trial trial;
   trial.fitted = false;
   trial.rmse = std::numeric_limits<double>::infinity();
-  trial.added = model.effects.size() - 1;
   trial.model = std::move(model);
   return trial;
 }

@@ -33,6 +33,16 @@ inline double variance(std::span<const double> values) noexcept {
   return mean_square(values, mean(values));
 }
 
+/// Pearson's correlation of two series of one length; 0 where one of them is constant.
+inline double correlation(std::span<const double> x, std::span<const double> y) noexcept {
+  const double mean_x = mean(x);
+  const double mean_y = mean(y);
+  double xy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) xy += (x[i] - mean_x) * (y[i] - mean_y);
+  const double scale = std::sqrt(mean_square(x, mean_x)) * std::sqrt(mean_square(y, mean_y));
+  return scale > 0.0 ? xy / static_cast<double>(x.size()) / scale : 0.0;
+}
+
 /// The middle value by size, the upper one of two; 0 without values.
 inline double middle_of(std::vector<double> values) {
   if (values.empty()) return 0.0;

@@ -6,7 +6,7 @@
 #include "services/core/contract/config_error.hpp"
 #include "services/files/digest/digest.hpp"
 
-namespace stillhand::rig {
+namespace stillhand::digest {
 
 std::string content_digest(nlohmann::ordered_json whole) {
   whole.erase(kProvenance);
@@ -23,4 +23,4 @@ void require_as_written(std::string_view json, const std::string& origin) {
                     "it as it was written (provenance.content_sha256), or made again");
 }
 
-}  // namespace stillhand::rig
+}  // namespace stillhand::digest

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace stillhand::rig {
+namespace stillhand::digest {
 
 /// Entries of a file's provenance that the two below write and read.
 inline constexpr const char* kProvenance = "provenance";
@@ -20,4 +20,4 @@ std::string content_digest(nlohmann::ordered_json whole);
 /// @throws stillhand::ConfigError where the content is not the one that the digest was made of
 void require_as_written(std::string_view json, const std::string& origin);
 
-}  // namespace stillhand::rig
+}  // namespace stillhand::digest

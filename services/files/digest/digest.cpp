@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace stillhand::rig {
+namespace stillhand::digest {
 namespace {
 
 std::string hexadecimal(std::span<const unsigned char> bytes) {
@@ -61,4 +61,4 @@ std::string digest_line(const std::string& bytes, const std::string& name) {
   return sha256(bytes) + "  " + name + "\n";
 }
 
-}  // namespace stillhand::rig
+}  // namespace stillhand::digest

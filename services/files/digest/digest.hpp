@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace stillhand::rig {
+namespace stillhand::digest {
 
 /// 128 bits from the random source of the operating system, hexadecimal.
 std::string new_nonce();
@@ -16,4 +16,4 @@ std::string sha256_of_file(const std::filesystem::path& path);
 /// A line in the format of sha256sum.
 std::string digest_line(const std::string& bytes, const std::string& name);
 
-}  // namespace stillhand::rig
+}  // namespace stillhand::digest

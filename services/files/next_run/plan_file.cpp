@@ -58,7 +58,7 @@ double seconds_of(const settings::JsonEntry& entry) {
 
 // Files without a version are not from `plan-run`.
 void check_version(const settings::JsonEntry& top, const std::string& version) {
-  const settings::JsonEntry entry = top.at(rig::kProvenance).at("version");
+  const settings::JsonEntry entry = top.at(digest::kProvenance).at("version");
   if (entry.text() != version) {
     entry.refuse("'" + version + "', this program's: plan the run again");
   }
@@ -71,7 +71,7 @@ std::filesystem::path ride_of(const settings::JsonEntry& top, const std::filesys
   if (!std::filesystem::is_regular_file(ride)) {
     throw ConfigError(ride.string(), "no file", "the ride next to its plan");
   }
-  if (rig::sha256_of_file(ride) != digest.text()) {
+  if (digest::sha256_of_file(ride) != digest.text()) {
     digest.refuse("the digest of " + ride.string() + ", which is not the ride of this plan");
   }
   return ride;
@@ -112,7 +112,7 @@ PlanFile read_plan(const std::filesystem::path& path, const std::string& version
     }
     check_is_another(plan.candidates, entries[i]);
   }
-  rig::require_as_written(text, origin);
+  digest::require_as_written(text, origin);
   return plan;
 }
 

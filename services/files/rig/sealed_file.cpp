@@ -33,20 +33,20 @@ std::string sealed_text(const OpenedEffect& effect, const std::string& nonce) {
 }
 
 void commit_effect(const std::filesystem::path& folder, const std::string& text) {
-  recording::write_file(folder / kCommitmentFile, digest_line(text, kSealedFile));
+  recording::write_file(folder / kCommitmentFile, digest::digest_line(text, kSealedFile));
 }
 
 void open_effect(const std::filesystem::path& folder, const std::string& text,
                  const std::string& verdict_file) {
   const std::string commitment = (folder / kCommitmentFile).string();
-  const std::string line = digest_line(text, kSealedFile);
+  const std::string line = digest::digest_line(text, kSealedFile);
   if (!recording::read_file(commitment).starts_with(line)) {
     throw ConfigError(commitment, "the digest of another effect",
                       "the digest that the rig wrote at the start of the session");
   }
   if (!verdict_file.empty()) {
     const std::string verdict = recording::read_file((folder / verdict_file).string());
-    recording::write_file(commitment, line + digest_line(verdict, verdict_file));
+    recording::write_file(commitment, line + digest::digest_line(verdict, verdict_file));
   }
   recording::write_file(folder / kSealedFile, text);
 }

@@ -24,10 +24,10 @@ class PlanFileTest : public testing::Test {
     std::ofstream(path_.parent_path() / kRideName) << kRide;
     json_["seconds"] = 30.0;
     json_["ride"] = kRideName;
-    json_["ride_sha256"] = rig::sha256(kRide);
+    json_["ride_sha256"] = digest::sha256(kRide);
     json_["candidates"] = {json_of(made::candidate("x")), json_of(made::candidate("z"))};
     json_["provenance"]["version"] = "1.2.3";
-    json_["provenance"]["content_sha256"] = rig::content_digest(json_);
+    json_["provenance"]["content_sha256"] = digest::content_digest(json_);
   }
   PlanFile read() {
     std::ofstream(path_) << json_.dump();

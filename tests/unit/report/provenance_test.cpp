@@ -87,15 +87,15 @@ TEST(CommandLineTest, ItIsThisProgramsCall) {
 TEST(ProvenanceTest, AHandThatChangesANumberIsNoticed) {
   const std::string text =
       with_provenance(R"({"gain": 1.5, "list": [1, 2.25]})", {"1.0", "", "", {}});
-  rig::require_as_written(text, "m.json");
-  rig::require_as_written(nlohmann::ordered_json::parse(text).dump(), "m.json");  // white space
+  digest::require_as_written(text, "m.json");
+  digest::require_as_written(nlohmann::ordered_json::parse(text).dump(), "m.json");  // white space
   std::string changed = text;
   changed.replace(changed.find("2.25"), 4, "2.75");
-  EXPECT_THAT(support::refusal([&] { rig::require_as_written(changed, "m.json"); }),
+  EXPECT_THAT(support::refusal([&] { digest::require_as_written(changed, "m.json"); }),
               testing::HasSubstr("m.json: got a file that was changed after it was written"));
-  rig::require_as_written(R"({"gain": 1.5})", "of an older version");
+  digest::require_as_written(R"({"gain": 1.5})", "of an older version");
   // A result that is made from another one has its own.
-  rig::require_as_written(with_provenance(changed, {"1.0", "", "", {}}), "m.json");
+  digest::require_as_written(with_provenance(changed, {"1.0", "", "", {}}), "m.json");
 }
 
 }  // namespace stillhand::report::provenance_test

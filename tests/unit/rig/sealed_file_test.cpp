@@ -25,7 +25,8 @@ class SealedFileTest : public testing::Test {
 
 // FIPS 180-4's example of one block.
 TEST_F(SealedFileTest, DigestIsSha256) {
-  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(digest::sha256("abc"),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
 TEST_F(SealedFileTest, TextHoldsTheWholeTruth) {
@@ -42,7 +43,7 @@ TEST_F(SealedFileTest, TextHoldsTheWholeTruth) {
 TEST_F(SealedFileTest, CommitmentComesFirstAndHoldsNothingButTheDigest) {
   const std::string text = sealed_text(effect, nonce);
   commit_effect(folder, text);
-  EXPECT_EQ(content(kCommitmentFile), sha256(text) + "  undeclared_effect.json\n");
+  EXPECT_EQ(content(kCommitmentFile), digest::sha256(text) + "  undeclared_effect.json\n");
   EXPECT_FALSE(std::filesystem::exists(folder / kSealedFile));
   open_effect(folder, text, "");
   EXPECT_EQ(content(kSealedFile), text);
@@ -56,7 +57,7 @@ TEST_F(SealedFileTest, TheVerdictIsWrittenDownBeforeTheTruth) {
   std::ofstream(folder / "verdict.json") << "abc";
   open_effect(folder, text, "verdict.json");
   EXPECT_EQ(content(kCommitmentFile),
-            digest_line(text, kSealedFile) + digest_line("abc", "verdict.json"));
+            digest::digest_line(text, kSealedFile) + digest::digest_line("abc", "verdict.json"));
   EXPECT_EQ(content(kSealedFile), text);
 }
 
@@ -80,8 +81,8 @@ TEST_F(SealedFileTest, SeedAndNonceComeBackAndAnythingElseIsRefused) {
 }
 
 TEST_F(SealedFileTest, NoncesDiffer) {
-  EXPECT_EQ(new_nonce().size(), 32u);
-  EXPECT_NE(new_nonce(), new_nonce());
+  EXPECT_EQ(digest::new_nonce().size(), 32u);
+  EXPECT_NE(digest::new_nonce(), digest::new_nonce());
 }
 
 }  // namespace

@@ -60,18 +60,6 @@ void set_moments(Signal& of) {
   of.deviation = std::sqrt(signal::mean_square(of.values, of.mean));
 }
 
-double correlation(const Signal& left, const std::vector<double>& values) {
-  Signal right;
-  right.values = values;
-  set_moments(right);
-  if (left.deviation <= 0.0 || right.deviation <= 0.0) return 0.0;
-  double sum = 0.0;
-  for (std::size_t n = 0; n < values.size(); ++n) {
-    sum += (left.values[n] - left.mean) * (values[n] - right.mean);
-  }
-  return sum / (static_cast<double>(values.size()) * left.deviation * right.deviation);
-}
-
 // A channel that explains nothing: constant but for its rounding, or what a filter's start has
 // faded to.  No sensor resolves 1e-50 of an SI unit, and the sixth power of it still is a normal
 // double.
@@ -188,9 +176,9 @@ void Signals::add_derived() {
       if (each.quantity != sibling || each.derived) return false;
       if (sibling == Quantity::kPosition) {
         const auto rate = central_difference(each.values, rate_hz_, stretches_);
-        return correlation(from, rate) > kSameSignalCorrelation;
+        return signal::correlation(from.values, rate) > kSameSignalCorrelation;
       }
-      return correlation(each, made.values) > kSameSignalCorrelation;
+      return signal::correlation(each.values, made.values) > kSameSignalCorrelation;
     };
     if (std::any_of(all_.begin(), all_.begin() + static_cast<std::ptrdiff_t>(measured), is_it)) {
       continue;
@@ -217,7 +205,7 @@ const Signal* Signals::rate_of(const Signal& position) const noexcept {
   const auto difference = central_difference(position.values, rate_hz_, stretches_);
   for (const Signal& each : all_) {
     if (each.quantity != Quantity::kRate) continue;
-    if (correlation(each, difference) > kSameSignalCorrelation) return &each;
+    if (signal::correlation(each.values, difference) > kSameSignalCorrelation) return &each;
   }
   return nullptr;
 }
