@@ -9,9 +9,9 @@
 
 namespace stillhand::topics {
 
-/// Communication pattern of a topic; selects its QoS profile in qos/profiles.xml.
+/// Communication pattern of a topic; selects its QoS profile in qos/profiles.xml (profile_of()).
 enum class Pattern {
-  kStream1khz,    ///< "stream_1khz": newest sample counts, deadline, liveliness
+  kStream1khz,    ///< "stream_1khz": newest sample counts
   kStreamSlow,    ///< "stream_slow": 10 to 60 Hz, newest sample counts, liveliness
   kStateLatched,  ///< "state_latched": reliable, a late joiner gets the last sample
   kEvent,         ///< "event": reliable, every sample counts
@@ -54,7 +54,25 @@ struct Topic {
   double rate_hz;  ///< [Hz] nominal, 0: irregular
   std::span<const std::string_view> writers;
   std::span<const std::string_view> readers;
+  /// Of a command that moves the motor or the platform: the reader that DDS tells of a missed
+  /// deadline or of a writer that is gone.  Empty: none.
+  std::string_view supervisor = {};
 };
+
+/// Offers DEADLINE and LIVELINESS: each sample sets two timers of Fast DDS anew and wakes a thread
+/// for them, at each end (qos/README.md, "Deadline").
+inline constexpr std::string_view kControlLoop = "control_loop";
+
+/// QoS profile of a topic's writer.
+constexpr std::string_view profile_of(const Topic& topic) {
+  return topic.supervisor.empty() ? profile_of(topic.pattern) : kControlLoop;
+}
+
+/// QoS profile of a reader.
+constexpr std::string_view profile_of(const Topic& topic, std::string_view reader) {
+  return topic.supervisor.empty() || topic.supervisor != reader ? profile_of(topic.pattern)
+                                                                : kControlLoop;
+}
 
 namespace who {
 inline constexpr std::string_view kMotion[]{"motion"};
@@ -90,7 +108,8 @@ inline constexpr Topic kPlatformCommand{"stillhand/platform_command",
                                         Pattern::kStream1khz,
                                         1000.0,
                                         who::kMotion,
-                                        who::kRigAndRecorder};
+                                        who::kRigAndRecorder,
+                                        "rig"};
 inline constexpr Topic kRawSample{
     "stillhand/raw_sample",  "stillhand_msgs::RawSample", Pattern::kStream1khz, 1000.0, who::kRig,
     who::kSensingAndRecorder};
@@ -100,9 +119,13 @@ inline constexpr Topic kRigTruth{
 inline constexpr Topic kSensed{"stillhand/sensed",   "stillhand_msgs::Sensed",
                                Pattern::kStream1khz, 1000.0,
                                who::kSensing,        who::kSensedReaders};
-inline constexpr Topic kMotorCommand{"stillhand/motor_command", "stillhand_msgs::MotorCommand",
-                                     Pattern::kStream1khz,      1000.0,
-                                     who::kCancellation,        who::kMotorCommandReaders};
+inline constexpr Topic kMotorCommand{"stillhand/motor_command",
+                                     "stillhand_msgs::MotorCommand",
+                                     Pattern::kStream1khz,
+                                     1000.0,
+                                     who::kCancellation,
+                                     who::kMotorCommandReaders,
+                                     "rig"};
 inline constexpr Topic kTrackingSample{"stillhand/tracking_sample",
                                        "stillhand_msgs::TrackingSample",
                                        Pattern::kStream1khz,

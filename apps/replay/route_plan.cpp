@@ -66,7 +66,7 @@ runtime::WriterQos qos_for(const Channel& channel, const runtime::Playback& play
     if (const auto profile = playback.profile(name->second)) return *profile;
   }
   if (const topics::Topic* row = topics::find(channel.topic); row != nullptr) {
-    if (const auto profile = playback.profile(std::string(topics::profile_of(row->pattern)))) {
+    if (const auto profile = playback.profile(std::string(topics::profile_of(*row)))) {
       return *profile;
     }
   }

@@ -128,7 +128,7 @@ edds::Topic* topic_of(edds::DomainParticipant& participant,
 }  // namespace
 
 detail::WriterEndpoint* Bus::add_writer(const topics::Topic& topic, const TypeTag& type) {
-  const std::string profile(topics::profile_of(topic.pattern));
+  const std::string profile(topics::profile_of(topic));
   edds::DataWriterQos qos;
   if (!ok(impl_->publisher->get_datawriter_qos_from_profile(profile, qos))) {
     throw missing_profile(options_.profiles, "data_writer", profile);
@@ -160,7 +160,7 @@ void Bus::add_reader(const topics::Topic& topic, const TypeTag& type, std::share
     sample = std::make_shared<SerializedSample>();
   }
   impl_->open_reader(options_, topic, impl_->carrier(options_, type.support),
-                     std::string(topics::profile_of(topic.pattern)), std::move(sample),
+                     std::string(topics::profile_of(topic, options_.service)), std::move(sample),
                      std::move(deliver));
 }
 
@@ -301,6 +301,10 @@ void Bus::set_clock_offset(const std::string& service, std::int64_t offset_ns) {
 }
 
 void Bus::supervise(bool on) noexcept { impl_->supervising.store(on, std::memory_order_relaxed); }
+
+void Bus::note_silence() {
+  for (const auto& endpoint : impl_->endpoints) endpoint->note_silence();
+}
 
 std::vector<EndpointReport> Bus::report() const {
   std::vector<EndpointReport> reports;

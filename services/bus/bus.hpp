@@ -104,7 +104,7 @@ class Publisher {
 };
 
 /// One process on the bus: a DDS participant, its endpoints, and the peers matched with them.
-/// Every endpoint takes the QoS profile of its topic's pattern from the profile file; none is set
+/// Every endpoint takes its QoS profile (topics::profile_of()) from the profile file; none is set
 /// in code.  Callbacks of subscriptions run one at a time in the thread that receives user data;
 /// incidents come from DDS's event and discovery threads.
 class Bus {
@@ -217,6 +217,8 @@ class Bus {
   /// Counts of misses start and stop here: outside of a running session an absent sample is not a
   /// fault.
   void supervise(bool on) noexcept;
+  /// To be called now and then: reports each 1 kHz topic without a DDS deadline that is silent.
+  void note_silence();
   [[nodiscard]] std::vector<EndpointReport> report() const;
   [[nodiscard]] const Options& options() const noexcept { return options_; }
 

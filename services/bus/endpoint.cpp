@@ -208,6 +208,15 @@ void ReaderEndpoint::supervise(Tick tick, std::int64_t sent_ns, std::int64_t arr
   }
 }
 
+void ReaderEndpoint::note_silence() {
+  constexpr std::int64_t kDeadline_ns = 5'000'000;  // as control_loop's acts (qos/README.md)
+  const bool looks = topic_.pattern == topics::Pattern::kStream1khz && !options_.serialized &&
+                     topic_.supervisor != options_.service;
+  const std::int64_t last_ns = last_arrival_ns_.load(std::memory_order_relaxed);
+  if (!looks || last_ns == 0 || matched_count() == 0) return;
+  if (monotonic_ns() - last_ns > kDeadline_ns) note_missed(1);
+}
+
 EndpointReport ReaderEndpoint::report() {
   const std::lock_guard lock(report_mutex_);
   EndpointReport report = snapshot_.load();
@@ -233,8 +242,12 @@ void ReaderEndpoint::on_subscription_matched(edds::DataReader* /*reader*/,
 void ReaderEndpoint::on_requested_deadline_missed(
     edds::DataReader* /*reader*/, const edds::RequestedDeadlineMissedStatus& status) {
   // The timer goes on after its writer died; that is liveliness's business.
-  if (!supervising_.load(std::memory_order_relaxed) || !has_living_writer()) return;
-  deadline_misses_.fetch_add(status.total_count_change, std::memory_order_relaxed);
+  if (has_living_writer()) note_missed(status.total_count_change);
+}
+
+void ReaderEndpoint::note_missed(std::int64_t count) {
+  if (!supervising_.load(std::memory_order_relaxed)) return;
+  deadline_misses_.fetch_add(static_cast<std::uint64_t>(count), std::memory_order_relaxed);
   const std::int64_t silent_ns = monotonic_ns() - last_arrival_ns_.load(std::memory_order_relaxed);
   note_incident(stillhand_msgs::EVENT_DEADLINE_MISSED, sole_writer(),
                 static_cast<double>(silent_ns) * 1e-3);

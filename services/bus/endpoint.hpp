@@ -41,6 +41,9 @@ class Endpoint {
   virtual void take_waiting() {}
   /// By how much the writer's monotonic clock is ahead of this process's [ns].
   virtual void set_clock_ahead(std::int64_t /*ahead_ns*/) noexcept {}
+  /// A 1 kHz reader that has no DEADLINE (topics::Topic::supervisor) notes when it is silent for as
+  /// long as that; nothing for others.
+  virtual void note_silence() {}
   virtual EndpointReport report() = 0;
   /// Services matched now.
   [[nodiscard]] std::set<std::string> matched_services() const;
@@ -106,6 +109,7 @@ class ReaderEndpoint final : public Endpoint, public edds::DataReaderListener {
   bool enable() override { return ok(reader->enable()); }
   void close_reader(edds::Subscriber& owner) override;
   void take_waiting() override;
+  void note_silence() override;
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return false; }
   void set_clock_ahead(std::int64_t ahead_ns) noexcept override {
@@ -128,6 +132,7 @@ class ReaderEndpoint final : public Endpoint, public edds::DataReaderListener {
   void on_requested_incompatible_qos(edds::DataReader*,
                                      const edds::RequestedIncompatibleQosStatus& status) override;
   void supervise(Tick tick, std::int64_t sent_ns, std::int64_t arrived_ns);
+  void note_missed(std::int64_t count);
   [[nodiscard]] bool has_living_writer() const noexcept;
 
   /// The topic is written once, by one process: a sample may wait until that process is named.

@@ -33,7 +33,7 @@ void FoundWriters::learn_depths(const edds::Publisher& publisher,
                                 const std::filesystem::path& profiles) {
   const std::lock_guard lock(mutex_);
   for (const topics::Topic* row : topics::kCatalogue) {
-    const std::string name(topics::profile_of(row->pattern));
+    const std::string name(topics::profile_of(*row));
     const std::optional<WriterQos> qos = profile_qos(publisher, name);
     if (!qos) throw missing_profile(profiles, "data_writer", name);
     depth_of_[name] = qos->depth;
@@ -87,7 +87,7 @@ std::optional<std::size_t> FoundWriters::note_writer(const AnnouncedWriter& anno
   writer.qos.keyed = announced.guid.entityId.value[3] == kWriterWithKey;
   writer.wanted = wanted;
   if (const topics::Topic* row = topics::find(writer.topic); row != nullptr) {
-    writer.profile = std::string(topics::profile_of(row->pattern));
+    writer.profile = std::string(topics::profile_of(*row));
   }
   by_handle_.emplace(handle, next_);
   writers_.emplace(next_, Entry{std::move(writer), handle, false});

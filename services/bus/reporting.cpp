@@ -148,6 +148,7 @@ void Reporter::publish_events() {
 }
 
 void Reporter::publish_status() {
+  bus_.note_silence();
   stillhand_msgs::ServiceStatus status;
   status.service(bus_.options().service);
   status.pid(static_cast<std::uint32_t>(getpid()));

@@ -42,7 +42,6 @@ using runtime::ok;
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 constexpr std::int64_t kWait_ns = 900'000;  // of the rig for its answer, from the tick on
-constexpr const char* kProfile = "stream_1khz";
 
 /// A participant of the lab's profile.
 class Participant {
@@ -63,12 +62,14 @@ class Participant {
   edds::DataWriter* writer(const topics::Topic& topic, const edds::TypeSupport& type,
                            edds::DataWriterListener& listener) {
     auto* publisher = participant_->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
-    return publisher->create_datawriter_with_profile(dds_topic(topic, type), kProfile, &listener);
+    return publisher->create_datawriter_with_profile(
+        dds_topic(topic, type), std::string(topics::profile_of(topic)), &listener);
   }
   void reader(const topics::Topic& topic, const edds::TypeSupport& type,
               edds::DataReaderListener& listener) {
     auto* subscriber = participant_->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT);
-    subscriber->create_datareader_with_profile(dds_topic(topic, type), kProfile, &listener);
+    subscriber->create_datareader_with_profile(
+        dds_topic(topic, type), std::string(topics::profile_of(topic, "rig")), &listener);
   }
 
  private:

@@ -98,12 +98,12 @@ struct Stranger {
   }
   void read(const topics::Topic& row) {
     Reading& listener = listening.emplace_back(runtime::find_type(row.type)->support);
-    subscriber->create_datareader_with_profile(
-        topic(row), std::string(topics::profile_of(row.pattern)), &listener);
+    subscriber->create_datareader_with_profile(topic(row), std::string(topics::profile_of(row)),
+                                               &listener);
   }
   edds::DataWriter* writer(const topics::Topic& row) {
     return publisher->create_datawriter_with_profile(
-        topic(row), std::string(topics::profile_of(row.pattern)), &telling);
+        topic(row), std::string(topics::profile_of(row)), &telling);
   }
 
   // Listeners outlive the readers and writers that call them.

@@ -181,6 +181,53 @@ TEST(BusTest, AnotherRigsSamplesAreNotDelivered) {
   EXPECT_EQ(received.load(), 1);
 }
 
+/// A reader of motor commands, and how often it reported their absence.
+struct CommandReader {
+  explicit CommandReader(const std::string& service) : bus(options_of(service)) {
+    bus.subscribe<stillhand_msgs::MotorCommand>(topics::kMotorCommand,
+                                                [this](const auto&, const auto&) { ++received; });
+    bus.supervise(true);
+    bus.start();
+  }
+
+  std::atomic<int> received{0};
+  std::atomic<int> missed{0};
+  Bus bus;
+
+ private:
+  Bus::Options options_of(const std::string& service) {
+    auto options = support::bus_options(service);
+    options.on_incident = [this](const BusIncident& incident) {
+      if (incident.kind == stillhand_msgs::EVENT_DEADLINE_MISSED) ++missed;
+    };
+    return options;
+  }
+};
+
+TEST(BusTest, DdsTellsTheRigOfSilenceAndOtherReadersLookForIt) {
+  CommandReader rig("rig");
+  CommandReader screen("display");
+  Bus writer(support::bus_options("cancellation"));
+  auto publisher = writer.publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand);
+  writer.start();
+  screen.bus.note_silence();  // never a sample yet
+  ASSERT_TRUE(eventually([&] {
+    stillhand_msgs::MotorCommand message;
+    publisher.write(message);
+    return rig.received > 0 && screen.received > 0;
+  }));
+  ASSERT_TRUE(eventually([&] { return rig.missed > 0; }));
+  EXPECT_EQ(screen.missed, 0);
+  EXPECT_TRUE(eventually([&] {
+    screen.bus.note_silence();
+    return screen.missed == 1;
+  }));
+  screen.bus.supervise(false);
+  screen.bus.note_silence();
+  EXPECT_EQ(screen.missed, 1);
+  EXPECT_EQ(screen.bus.report().front().deadline_misses, 1u);
+}
+
 TEST(BusTest, ADomainOutOfRangeIsTheOperatorsToMend) {
   auto options = support::bus_options("rig");
   options.domain = 233;

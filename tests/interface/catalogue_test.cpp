@@ -94,8 +94,22 @@ TEST(CatalogueTest, TheReadmeSaysTheSameOfEachTopic) {
     EXPECT_EQ(names(row.at(6)),
               (std::set<std::string>{topic->readers.begin(), topic->readers.end()}))
         << topic->name;
-    EXPECT_EQ(row.at(7), profile_of(topic->pattern)) << topic->name;
+    EXPECT_EQ(row.at(7), profile_of(*topic)) << topic->name;
   }
+}
+
+TEST(CatalogueTest, DdsSupervisesWhatMovesTheMotorAndThePlatform) {
+  std::map<std::string_view, std::string_view> supervised;
+  for (const Topic* topic : kCatalogue) {
+    if (!topic->supervisor.empty()) supervised[topic->type] = topic->supervisor;
+    for (const std::string_view reader : topic->readers) {
+      const bool loop = reader == topic->supervisor;
+      EXPECT_EQ(profile_of(*topic, reader), loop ? "control_loop" : profile_of(topic->pattern));
+    }
+  }
+  EXPECT_THAT(supervised, testing::UnorderedElementsAre(
+                              testing::Pair("stillhand_msgs::MotorCommand", "rig"),
+                              testing::Pair("stillhand_msgs::PlatformCommand", "rig")));
 }
 
 TEST(CatalogueTest, EveryTopicIsRecorded) {

@@ -39,9 +39,9 @@ class Writer : public edds::DataWriterListener {
     type_tag<MotorCommand>().support.register_type(participant_);
     edds::Topic* topic = participant_->create_topic(std::string(row.name), std::string(row.type),
                                                     edds::TOPIC_QOS_DEFAULT);
-    writer_ = participant_->create_publisher(edds::PUBLISHER_QOS_DEFAULT)
-                  ->create_datawriter_with_profile(
-                      topic, std::string(topics::profile_of(row.pattern)), this);
+    writer_ =
+        participant_->create_publisher(edds::PUBLISHER_QOS_DEFAULT)
+            ->create_datawriter_with_profile(topic, std::string(topics::profile_of(row)), this);
   }
   ~Writer() override {
     participant_->delete_contained_entities();

@@ -59,7 +59,7 @@ class ReplayMarkTest : public testing::Test {
   Playback replay{kProfiles, support::own_domain(), "stillhand-replay/test"};
 };
 
-WriterQos stream_qos(const Playback& replay) { return *replay.profile("stream_1khz"); }
+WriterQos stream_qos(const Playback& replay) { return *replay.profile("control_loop"); }
 
 TEST_F(ReplayMarkTest, ARigTakesNoCommandOfAReplayAndGoesOnTakingTheCancellations) {
   const std::size_t writer = replay.add_writer("stillhand/motor_command",

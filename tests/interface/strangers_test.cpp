@@ -68,10 +68,10 @@ class Stranger : public edds::DataWriterListener {
     if (participant_ == nullptr) throw std::runtime_error("Fast DDS refused the stranger itself");
     edds::Subscriber* subscriber = participant_->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT);
     reader_ = subscriber->create_datareader_with_profile(
-        topic<PlatformCommand>(topics::kPlatformCommand), "stream_1khz");
+        topic<PlatformCommand>(topics::kPlatformCommand), "control_loop");
     edds::Publisher* publisher = participant_->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
     writer_ = publisher->create_datawriter_with_profile(topic<MotorCommand>(topics::kMotorCommand),
-                                                        "stream_1khz", this);
+                                                        "control_loop", this);
   }
   ~Stranger() override {
     participant_->delete_contained_entities();

@@ -32,7 +32,7 @@ struct Config {
     visit("late_warning_ms", self.late_warning_ms, Range{0.0, 1000.0},
           "[ms] beyond the deadline, by the writer's stamps");
     visit("late_critical_ms", self.late_critical_ms, Range{0.0, 1000.0},
-          "[ms] the same; with the deadline 5.5 ms, the DDS deadline of stream_1khz");
+          "[ms] the same; with the deadline 5.5 ms, the DDS deadline of control_loop");
     visit("lost_warning_ticks", self.lost_warning_ticks, Range{1.0, 1e6},
           "[ticks] missing in a row");
     visit("lost_critical_ticks", self.lost_critical_ticks, Range{1.0, 1e6},

@@ -70,7 +70,7 @@ Json graph_json(const MessageFeed& feed) {
   for (const topics::Topic* topic : topics::kCatalogue) {
     if (!feed.wants(std::string(topic->name))) continue;
     all.push_back({{"topic", topic->name},
-                   {"pattern", topics::profile_of(topic->pattern)},
+                   {"pattern", topics::profile_of(*topic)},
                    {"writers", topic->writers},
                    {"readers", readers_json(feed, *topic)}});
   }

@@ -8,8 +8,8 @@
 #include "control_loop.h"
 #include "tests/support/cyclone.h"
 
-// What the pattern stream_1khz asks of a writer: qos/README.md, "From another DDS".
-static dds_qos_t* stream_1khz(void) {
+// What a reader with the profile control_loop asks of a writer: qos/README.md, "From another DDS".
+static dds_qos_t* control_loop(void) {
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
   dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   signal(SIGTERM, on_signal);
   const dds_entity_t participant =
       good(dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL), "participant");
-  dds_qos_t* qos = stream_1khz();
+  dds_qos_t* qos = control_loop();
   const dds_entity_t command_topic =
       good(dds_create_topic(participant, &stillhand_msgs_MotorCommand_desc,
                             "stillhand/motor_command", NULL, NULL),

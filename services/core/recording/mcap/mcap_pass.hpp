@@ -32,7 +32,8 @@ struct McapReader::Pass {
 
   static bool is_stream(const Channel& channel) {
     const auto profile = channel.metadata.find("qos_profile");
-    return profile != channel.metadata.end() && profile->second == "stream_1khz" &&
+    return profile != channel.metadata.end() &&
+           (profile->second == "stream_1khz" || profile->second == "control_loop") &&
            !channel.metadata.contains("replayed");
   }
   const Topic& topic(const McapReader& reader, ChannelId id) {
