@@ -142,7 +142,11 @@ TEST(ClockStepsTest, APauseOrARecorderThatStoodStillIsNoStep) {
     };
     for (std::int64_t n = 0; n < 1000; ++n) put(n, n);
     for (std::int64_t n = 1000; n < 2000; ++n) put(n, 2000);  // a second's worth had waited
-    for (std::int64_t n = 2001; n < 3000; ++n) put(n, n);
+    for (std::int64_t n = 2001; n < 2500; ++n) put(n, n);
+    // 34 ms had waited, and it catches up by 1 ms in four samples.
+    for (std::int64_t n = 2500; n < 3000; ++n) {
+      put(n, n + std::max<std::int64_t>(0, 34 - (n - 2500) / 4));
+    }
     for (std::int64_t n = 13'000; n < 14'000; ++n) put(n, n);  // nothing was sent for 10 s
     const auto [times_ms, steps] = closed(recorded);
     EXPECT_EQ(times_ms, want);

@@ -9,10 +9,9 @@
 namespace stillhand::recording {
 namespace {
 
-constexpr std::int64_t kLongestWait_ns = 200'000'000;
+// A recorder next to busy processes takes a while for what has waited, even 30 ms of it.
+constexpr std::int64_t kWait_ns = 200'000'000;
 constexpr std::size_t kMost = 16;  // of more, the log times are no clock's that a person sets
-
-std::int64_t wait_of(std::int64_t by_ns) { return std::min(by_ns, kLongestWait_ns); }
 
 // Modulo 2^64: times in a file may be anything.
 std::int64_t less(std::int64_t a_ns, std::int64_t b_ns) {
@@ -47,14 +46,14 @@ void ClockStepFinder::take(std::uint64_t chunk, std::uint64_t message, ChannelId
     return;
   }
   if (stream && jump_ns > kLeast_ns) {
-    if (!forward_) forward_ = {step, channel, less(head.stamp_ns, -wait_of(jump_ns))};
+    if (!forward_) forward_ = {step, channel, less(head.stamp_ns, -kWait_ns)};
     return;
   }
   newest = {ahead_ns, std::max(log_ns, newest.log_ns)};
 }
 
 bool ClockStepFinder::still_ahead(const Forward& forward, std::int64_t jump_ns) const {
-  return jump_ns > forward.step.by_ns - wait_of(forward.step.by_ns) / 2;
+  return jump_ns > forward.step.by_ns - std::min(forward.step.by_ns, kWait_ns) / 2;
 }
 
 void ClockStepFinder::accept(const ClockStep& step) {

@@ -24,8 +24,8 @@ struct ClockStep {
 /// the way to the recorder.
 ///
 ///   back      the log time of a writer's sample is before that of its sample before
-///   forward   log time less stamp has grown by S, and min(S, 0.2 s) of stamps later it still has;
-///             of a recorder that stood still and takes what has waited, it has not
+///   forward   log time less stamp has grown by S, and 0.2 s of stamps later it still has; of a
+///             recorder that stood still and takes what has waited, it has not
 ///
 /// A file without such samples shows only steps back, with an error of one message's interval.
 /// Pure; one thread; messages in the order of the file.
