@@ -199,9 +199,13 @@ std::size_t coefficients_of(const Effect& effect, const Model& model, const Sign
 // What no single entry shows: whether the effects have all that their kinds and forms read.
 void check_effects(const Model& model, const std::vector<Entry>& entries) {
   const Signals signals = made_up_signals(model);
+  int feedbacks = 0;
   for (std::size_t i = 0; i < model.effects.size(); ++i) {
     const Effect& effect = model.effects[i];
     try {
+      if (effect_kind(effect.kind).stage(effect) == Stage::kFeedback && ++feedbacks > 1) {
+        entries[i].refuse("one effect inside of the body at a time");
+      }
       const std::size_t count = coefficients_of(effect, model, signals);
       if (effect.coefficients.size() != count) {
         entries[i].at("coefficients").refuse(std::to_string(count) + " numbers for this form");

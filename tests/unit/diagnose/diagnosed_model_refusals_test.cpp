@@ -104,6 +104,19 @@ TEST(DiagnosedModelRefusalsTest, ANumberThatIsNotFiniteIsNotWritten) {
   }
 }
 
+// METHOD.md: a model has one feedback at a time, and what runs it counts on that.
+TEST(DiagnosedModelRefusalsTest, ASecondEffectInsideOfTheBodyIsRefused) {
+  const Effect play{
+      "dead_zone", "play of the output", {}, {{"threshold", "N", 1.0, 0.5, 2.0}}, {0.1, 0.0}};
+  Model model = good_model();
+  model.effects.push_back(play);
+  json file = json::parse(model_json(model));
+  EXPECT_EQ(refusal(file.dump()), "accepted");
+  file["effects"].push_back(file["effects"].back());
+  EXPECT_THAT(refusal(file.dump()),
+              AllOf(StartsWith("m.json.effects[2]"), HasSubstr("one effect inside of the body")));
+}
+
 TEST(DiagnosedModelRefusalsTest, TextThatIsNoJsonIsRefusedWithItsFile) {
   for (const char* text : {"", "{", "[1, 2", "{\"format\": }", "nan"}) {
     EXPECT_THAT(refusal(text), StartsWith("m.json")) << text;
