@@ -62,6 +62,16 @@ TEST(PlatformTest, FollowsTheTransferFunctionOfItsPositionLoop) {
   }
 }
 
+TEST(PlatformTest, TheDriveFollowsWithItsLag) {
+  const PlatformConfig config;
+  Platform sut(config);
+  const double wanted_m_s2 =
+      2.0 * config.loop_damping * 2.0 * std::numbers::pi * config.loop_frequency_hz * 0.01;
+  // A tick of 1 ms is half of the lag.
+  EXPECT_NEAR(sut.step({true, 0.0, 0.01, 0.0}).state.acceleration_m_s2,
+              (1.0 - std::exp(-0.5)) * wanted_m_s2, 1e-9);
+}
+
 TEST(PlatformTest, StaysInsideItsLimitsWhateverIsAskedOfIt) {
   const PlatformConfig config;
   Platform sut(config);
