@@ -54,13 +54,13 @@ struct Topic {
   double rate_hz;  ///< [Hz] nominal, 0: irregular
   std::span<const std::string_view> writers;
   std::span<const std::string_view> readers;
-  /// Of a command that moves the motor or the platform: the reader that DDS tells of a missed
-  /// deadline or of a writer that is gone.  Empty: none.
+  /// The reader to which DDS reports a missed deadline of this topic, and the end of its writer.
+  /// The commands to motor and platform have one; empty: none.
   std::string_view supervisor = {};
 };
 
-/// Offers DEADLINE and LIVELINESS: each sample sets two timers of Fast DDS anew and wakes a thread
-/// for them, at each end (qos/README.md, "Deadline").
+/// Offers DEADLINE and LIVELINESS.  Each sample restarts two timers of Fast DDS at each end, and
+/// wakes a thread for them (qos/README.md, "Deadline").
 inline constexpr std::string_view kControlLoop = "control_loop";
 
 /// QoS profile of a topic's writer.

@@ -217,7 +217,7 @@ class Bus {
   /// Counts of misses start and stop here: outside of a running session an absent sample is not a
   /// fault.
   void supervise(bool on) noexcept;
-  /// To be called now and then: reports each 1 kHz topic without a DDS deadline that is silent.
+  /// Reports each silent 1 kHz topic that has no DDS deadline here.  The reporter calls it.
   void note_silence();
   [[nodiscard]] std::vector<EndpointReport> report() const;
   [[nodiscard]] const Options& options() const noexcept { return options_; }

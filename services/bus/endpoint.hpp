@@ -41,8 +41,8 @@ class Endpoint {
   virtual void take_waiting() {}
   /// By how much the writer's monotonic clock is ahead of this process's [ns].
   virtual void set_clock_ahead(std::int64_t /*ahead_ns*/) noexcept {}
-  /// A 1 kHz reader that has no DEADLINE (topics::Topic::supervisor) notes when it is silent for as
-  /// long as that; nothing for others.
+  /// Notes a missed deadline if this is a 1 kHz reader without a DDS deadline
+  /// (topics::Topic::supervisor) and no sample has come for as long; nothing for others.
   virtual void note_silence() {}
   virtual EndpointReport report() = 0;
   /// Services matched now.

@@ -11,7 +11,7 @@ struct EndCounts {
   std::uint64_t samples = 0;
   std::uint64_t lost_ticks = 0;
   std::uint64_t cycle_misses = 0;     ///< its own supervision, microseconds
-  std::uint64_t deadline_misses = 0;  ///< DDS's
+  std::uint64_t deadline_misses = 0;  ///< DDS's, and silence that a reader found
   double worst_interval_us = 0.0;
   double latency_p99_us = 0.0;
 };

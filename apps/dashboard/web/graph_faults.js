@@ -37,7 +37,7 @@ function trouble({ topic, writers }, reader, now) {
   };
   const longest = `longest interval ${(reader.worst_interval_us / 1000).toFixed(1)} ms`;
   if (reader.lost_ticks > 0) add("lost", "warning", lost, `lost ${times(reader.lost_ticks, "tick")}`);
-  if (reader.deadline_misses > 0) add("missed", "warning", missed, `${times(reader.deadline_misses, "DDS deadline")} missed, ${longest}`);
+  if (reader.deadline_misses > 0) add("missed", "warning", missed, `${times(reader.deadline_misses, "deadline")} missed, ${longest}`);
   // The loop tolerates late cycles: they are listed without a warning.
   if (reader.cycle_misses > 0) add("late", "healthy", late, `${times(reader.cycle_misses, "cycle")} late, ${longest}`);
   return found;

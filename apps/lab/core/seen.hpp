@@ -30,7 +30,7 @@ inline constexpr std::string_view kRecorder = "recorder";
 
 /// Misses since the session began [-].
 struct Misses {
-  std::int64_t deadline = 0;  ///< DDS's count
+  std::int64_t deadline = 0;  ///< DDS's count, and silence that a reader found
   std::int64_t cycle = 0;     ///< own microsecond supervision
   std::int64_t lost_ticks = 0;
 };

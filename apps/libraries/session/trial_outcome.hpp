@@ -14,7 +14,7 @@ namespace stillhand::session {
 
 /// Misses that every reader counted since the session began.
 struct MissCounts {
-  std::int64_t deadline = 0;  ///< DDS's count
+  std::int64_t deadline = 0;  ///< DDS's count, and silence that a reader found
   std::int64_t cycle = 0;     ///< own microsecond supervision
   std::int64_t lost_ticks = 0;
 };

@@ -189,7 +189,7 @@ TEST(SessionTest, WithoutAnIdentificationTheLongestTrialIsTaken) {
   run_ticks(file, 0, 100);
   file.control(5, PHASE_TRACKING, 100, 180);
   run_ticks(file, 100, 200);
-  file.control(5, PHASE_TRACKING, 100, 180);  // said again
+  file.control(5, PHASE_TRACKING, 100, 180);  // announced twice
   run_ticks(file, 200, 280);
   file.control(6, PHASE_TRACKING, 300, 120);
   run_ticks(file, 280, 420);

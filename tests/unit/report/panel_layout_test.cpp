@@ -88,7 +88,7 @@ TEST(PanelLayoutTest, ALegendHasItsPlaceAboveOrInACorner) {
   EXPECT_THAT(laid(), near({6.0 + 24.0 + 19.0 + 4.0, plot.left, 39.5, 20.0}));
   asked.panels[0].title = "";
   EXPECT_THAT(laid(), near({6.0 + 2.0 + 19.0 + 4.0, plot.left, 17.5, -2.0}));
-  // In a corner a row for each entry, with 7 px beside and 3 px above and below them.
+  // In a corner a row for each entry, with 7 px at each side and 3 px above and below.
   const double width_px = column.width_px + 14.0, height_px = 2.0 * 19.0 + 6.0;
   asked.panels[0].legend = Legend::kTopLeft;
   PanelLayout sut = lay_out(asked)[0];
