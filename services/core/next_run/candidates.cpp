@@ -9,6 +9,7 @@
 #include "services/core/diagnosis/fitting/fit.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
+#include "services/core/diagnosis/model/model_run.hpp"
 #include "services/core/diagnosis/trials.hpp"
 
 namespace stillhand::next_run {
@@ -33,14 +34,17 @@ bool is_rival(const Trial& trial, const Trial& chosen, const std::vector<std::st
          diagnosis::compared(trial.held_out, chosen.held_out).t < kNearlyTied;
 }
 
-// The trial's model with those effects of the verdict that came after it.
+// The trial's model with those effects of the verdict that came after it; as in the search, one
+// inside of the body at a time.
 Candidate completed(const Trial& trial, const Model& found, std::size_t replaced,
                     const diagnosis::Signals& signals) {
   Candidate candidate{trial.model, trial.model.effects.size() - 1, trial.rmse};
   std::vector<Effect>& effects = candidate.model.effects;
   for (std::size_t e = 0; e < found.effects.size(); ++e) {
     const auto is_this = [&](const Effect& each) { return is_same(each, found.effects[e]); };
-    if (e != replaced && std::ranges::none_of(effects, is_this)) {
+    const bool second_loop = acts_at(found.effects[e], diagnosis::Stage::kFeedback) &&
+                             diagnosis::feedback_of(candidate.model) != nullptr;
+    if (e != replaced && !second_loop && std::ranges::none_of(effects, is_this)) {
       effects.push_back(at_order(found.effects[e], found.body.order(), trial.model.body.order()));
     }
   }

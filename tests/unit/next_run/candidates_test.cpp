@@ -42,34 +42,59 @@ TEST(CandidatesTest, TwoChannelsThatAreNearlyTheSameAreTied) {
   EXPECT_THAT(channels, testing::IsSupersetOf({"x", "z"}));
 }
 
-// The rival was tried with a body of its own, and takes over the spring that was found behind it.
-TEST(CandidatesTest, ARivalMayHaveABodyOfAnotherOrder) {
-  const diagnosis::Signals signals(measured(), {"u"}, "y");
-  const auto tried = [](const char* channel, std::size_t order) {
-    diagnosis::Body body;
-    body.denominator.assign(order + 1, 0.0);
-    body.denominator.front() = 1.0;
-    body.numerators = {std::vector<double>(order + 1, 1.0)};
-    diagnosis::Trial trial;
-    trial.rmse = 1.0;
-    trial.model =
-        diagnosis::made::model_of(body, {{"coupled_input", "static", {channel}, {}, {1.0}}});
-    return trial;
-  };
+const diagnosis::Effect kStatic{"coupled_input", "static", {"x"}, {}, {1.0}};
+const diagnosis::Effect kSlopes{"asymmetry", "slopes of the output", {}, {}, {0.01, 0.01}};
+
+diagnosis::Trial tried(const diagnosis::Effect& effect, std::size_t order) {
+  diagnosis::Body body;
+  body.denominator.assign(order + 1, 0.0);
+  body.denominator.front() = 1.0;
+  body.numerators = {std::vector<double>(order + 1, 1.0)};
+  diagnosis::Trial trial;
+  trial.rmse = 1.0;
+  trial.model = diagnosis::made::model_of(body, {effect});
+  return trial;
+}
+
+// The verdict is the first of them, and `found` behind it.
+std::vector<Candidate> candidates_among(const std::vector<diagnosis::Trial>& trials,
+                                        const diagnosis::Effect& found) {
   diagnosis::Diagnosis diagnosis;
   diagnosis::Addition addition;
-  addition.tried = {tried("x", 2), tried("z", 1)};
+  addition.tried = trials;
   diagnosis.search.additions = {addition};
   diagnosis.effects.resize(1);
-  diagnosis.effects.front().ties = {"coupled_input"};
-  diagnosis.model = addition.tried.front().model;
-  diagnosis.model.effects.push_back({"asymmetry", "slopes of the output", {}, {}, {0.01, 0.01}});
-  const std::vector<Candidate> sut = candidates_of(diagnosis, 0, signals);
+  for (const auto& trial : trials) {
+    diagnosis.effects.front().ties.push_back(trial.model.effects.front().kind);
+  }
+  diagnosis.model = trials.front().model;
+  diagnosis.model.effects.push_back(found);
+  return candidates_of(diagnosis, 0, diagnosis::Signals(measured(), {"u"}, "y"));
+}
+
+// The rival was tried with a body of its own, and takes over the spring that was found behind it.
+TEST(CandidatesTest, ARivalMayHaveABodyOfAnotherOrder) {
+  diagnosis::Effect of_z = kStatic;
+  of_z.channels = {"z"};
+  const auto sut = candidates_among({tried(kStatic, 2), tried(of_z, 1)}, kSlopes);
   ASSERT_EQ(sut.size(), 2U);
   for (const Candidate& each : sut) {
     EXPECT_EQ(each.model.effects.back().coefficients.size(), each.model.body.order());
     EXPECT_EQ(each.cause().kind, "coupled_input");
   }
+}
+
+TEST(CandidatesTest, ARivalInsideOfTheBodyTakesOverNoOtherOne) {
+  const diagnosis::Effect rival{"hysteresis",
+                                "elastic-plastic of the output",
+                                {},
+                                {{"threshold", "N", 1.0, 0.1, 10.0}},
+                                {0.01, 0.01}};
+  const auto sut = candidates_among({tried(kStatic, 2), tried(rival, 2)}, kSlopes);
+  ASSERT_EQ(sut.size(), 2U);
+  EXPECT_EQ(sut[0].model.effects.size(), 2U);
+  ASSERT_EQ(sut[1].model.effects.size(), 1U);
+  EXPECT_EQ(sut[1].cause().kind, "hysteresis");
 }
 
 TEST(CandidatesTest, ATieHasOneWordingWhetherItIsBrokenOrNot) {

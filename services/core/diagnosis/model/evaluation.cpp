@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "services/core/contract/expects.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/interpolation.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
@@ -128,7 +129,7 @@ void run_bodies(std::span<const Model> models, const Signals& signals, std::span
       continue;
     }
     LoopCase each{&models[i].body, feedback_of(models[i]), &runs[i].inputs};
-    if (each.feedback.empty()) {
+    if (each.feedback == nullptr) {
       run_linear_body(models[i], signals, runs[i]);
       continue;
     }
@@ -141,7 +142,7 @@ void run_bodies(std::span<const Model> models, const Signals& signals, std::span
       started[i] = with_start(models[i].body);
       each.body = &started[i];
     }
-    cases.push_back(std::move(each));
+    cases.push_back(each);
     with_loop.push_back(i);
   }
   std::vector<LoopRun> loops(cases.size());
@@ -258,10 +259,12 @@ bool acts_at(const Effect& effect, Stage stage) {
   return effect_kind(effect.kind).stage(effect) == stage;
 }
 
-std::vector<const Effect*> feedback_of(const Model& model) {
-  std::vector<const Effect*> feedback;
+const Effect* feedback_of(const Model& model) {
+  const Effect* feedback = nullptr;
   for (const Effect& effect : model.effects) {
-    if (acts_at(effect, Stage::kFeedback)) feedback.push_back(&effect);
+    if (!acts_at(effect, Stage::kFeedback)) continue;
+    STILLHAND_EXPECTS(feedback == nullptr);
+    feedback = &effect;
   }
   return feedback;
 }

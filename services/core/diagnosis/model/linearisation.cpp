@@ -16,20 +16,15 @@ namespace {
 enum class Loop { kNone, kOfOutput, kInside };
 
 Loop loop_of(const Model& model) {
-  Loop loop = Loop::kNone;
-  for (const Effect& effect : model.effects) {
-    if (!acts_at(effect, Stage::kFeedback)) continue;
-    const bool inside = loop == Loop::kNone && !loop_path(effect, model.body.order()).of_output();
-    loop = inside ? Loop::kInside : Loop::kOfOutput;
-  }
-  return loop;
+  const Effect* feedback = feedback_of(model);
+  if (feedback == nullptr) return Loop::kNone;
+  return loop_path(*feedback, model.body.order()).of_output() ? Loop::kOfOutput : Loop::kInside;
 }
 
 // Which acts from a level of the output: the offset moves the body against it.
 bool has_stop(const Model& model) {
-  return std::ranges::any_of(feedback_of(model), [](const Effect* effect) {
-    return effect_kind(effect->kind).feedback(*effect).stop.has_value();
-  });
+  const Effect* feedback = feedback_of(model);
+  return feedback != nullptr && effect_kind(feedback->kind).feedback(*feedback).stop.has_value();
 }
 
 // A number whose column comes from a forward difference.

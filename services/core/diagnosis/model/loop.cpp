@@ -63,20 +63,13 @@ void add_past(const Lanes<L>* taps, std::ptrdiff_t from, std::size_t order, cons
 }
 
 template <std::size_t L>
-struct LoopLanes {
-  std::array<Running*, L> runs{};
-  bool of_output = false;
-  Taps<L> e, n, m;
-  Padded<L> z, phi;
-};
-
-template <std::size_t L>
 struct StretchRun {
-  Taps<L> a;
+  std::array<Running, L> loops;
+  bool of_output = false;
+  Taps<L> a, e, n, m;
   std::vector<Taps<L>> b;
-  std::vector<LoopLanes<L>> loops;
   std::vector<Padded<L>> inputs;
-  Padded<L> output;
+  Padded<L> output, z, phi;
   std::array<std::size_t, L> end{};  // of what is written before a run ran away
 };
 
@@ -89,23 +82,19 @@ void run_stretch(std::size_t order, double runaway, StretchRun<L>& run) {
     for (std::size_t k = 0; k < run.inputs.size(); ++k) {
       add_past<P, L>(run.b[k].data(), 0, order, &run.inputs[k][n], 1.0, y);
     }
-    for (const LoopLanes<L>& loop : run.loops) {
-      add_past<P, L>(loop.e.data(), 1, order, &loop.phi[n], 1.0, y);
-    }
+    add_past<P, L>(run.e.data(), 1, order, &run.phi[n], 1.0, y);
     add_past<P, L>(run.a.data(), 1, order, &run.output[n], -1.0, y);
-    for (LoopLanes<L>& loop : run.loops) {
-      Lanes<L> z = y;
-      if (!loop.of_output) {
-        z = {};
-        add_past<P, L>(loop.n.data(), 0, order, &run.inputs[0][n], 1.0, z);
-        add_past<P, L>(run.a.data(), 1, order, &loop.z[n], -1.0, z);
-        add_past<P, L>(loop.m.data(), 1, order, &loop.phi[n], 1.0, z);
-      }
-      loop.z[n] = z;
-      for (std::size_t l = 0; l < L; ++l) {
-        loop.phi[n][l] = loop.runs[l]->phi_of(z[l]);
-        y[l] += loop.e[0][l] * loop.phi[n][l];
-      }
+    Lanes<L> z = y;
+    if (!run.of_output) {
+      z = {};
+      add_past<P, L>(run.n.data(), 0, order, &run.inputs[0][n], 1.0, z);
+      add_past<P, L>(run.a.data(), 1, order, &run.z[n], -1.0, z);
+      add_past<P, L>(run.m.data(), 1, order, &run.phi[n], 1.0, z);
+    }
+    run.z[n] = z;
+    for (std::size_t l = 0; l < L; ++l) {
+      run.phi[n][l] = run.loops[l].phi_of(z[l]);
+      y[l] += run.e[0][l] * run.phi[n][l];
     }
     run.output[n] = y;
     bool bounded = true;
@@ -141,8 +130,8 @@ double sum_of(const std::vector<double>& c) { return std::accumulate(c.begin(), 
 // What everything holds before a stretch, under the inputs' levels.
 struct Rest {
   double output = 0.0;
-  std::vector<double> z;
-  std::vector<double> phi;
+  double z = 0.0;
+  double phi = 0.0;
 };
 
 double phi_afresh(Running& loop, double z) {
@@ -174,25 +163,15 @@ double equilibrium(Running& loop, double c, double g) {
   return std::isfinite(error) ? z : 0.0;
 }
 
-Rest rest_of(const Body& body, std::vector<Running>& loops, const std::vector<double>& levels) {
-  constexpr int kSweeps = 20;  // one loop settles in the first
+Rest rest_of(const Body& body, Running& loop, const std::vector<double>& levels) {
   const double a = sum_of(body.denominator);
   double linear = 0.0;
   for (std::size_t k = 0; k < levels.size(); ++k) linear += sum_of(body.numerators[k]) * levels[k];
-  Rest rest{linear / a, std::vector<double>(loops.size(), 0.0),
-            std::vector<double>(loops.size(), 0.0)};
-  for (int sweep = 0; sweep < (loops.size() > 1 ? kSweeps : 1); ++sweep) {
-    for (std::size_t i = 0; i < loops.size(); ++i) {
-      const LoopPath& path = loops[i].path;
-      const double e = sum_of(path.e) / a;
-      rest.output -= e * rest.phi[i];
-      const double without = path.of_output() ? rest.output : sum_of(path.n) * levels[0] / a;
-      rest.z[i] = equilibrium(loops[i], without, sum_of(path.to_argument(body.denominator)) / a);
-      rest.phi[i] = phi_afresh(loops[i], rest.z[i]);
-      rest.output += e * rest.phi[i];
-    }
-  }
-  return rest;
+  const LoopPath& path = loop.path;
+  const double without = path.of_output() ? linear / a : sum_of(path.n) * levels[0] / a;
+  const double z = equilibrium(loop, without, sum_of(path.to_argument(body.denominator)) / a);
+  const double phi = phi_afresh(loop, z);
+  return {linear / a + sum_of(path.e) / a * phi, z, phi};
 }
 
 }  // namespace
@@ -260,20 +239,16 @@ LoopPath loop_path(const Effect& effect, std::size_t order) {
 
 namespace {
 
-std::vector<Running> running(const LoopCase& each) {
-  std::vector<Running> loops;
-  for (const Effect* effect : each.feedback) {
-    Running loop{effect_kind(effect->kind).feedback(*effect),
-                 loop_path(*effect, each.body->order())};
-    if (loop.nonlinearity.stop) {
-      loop.stop = *loop.nonlinearity.stop - each.body->offset;
-    } else if (!effect->seen.empty()) {
-      loop.low = effect->seen.front().lower_edge();
-      loop.high = effect->seen.front().upper_edge();
-    }
-    loops.push_back(std::move(loop));
+Running running(const LoopCase& each) {
+  const Effect& effect = *each.feedback;
+  Running loop{effect_kind(effect.kind).feedback(effect), loop_path(effect, each.body->order())};
+  if (loop.nonlinearity.stop) {
+    loop.stop = *loop.nonlinearity.stop - each.body->offset;
+  } else if (!effect.seen.empty()) {
+    loop.low = effect.seen.front().lower_edge();
+    loop.high = effect.seen.front().upper_edge();
   }
-  return loops;
+  return loop;
 }
 
 // Up to L cases of one structure; the lanes behind the last case repeat it.
@@ -286,7 +261,7 @@ class LoopBatch {
         runs_(runs),
         order_(cases.front().body->order()),
         runaway_(runaway_bound(signals.output())) {
-    for (std::size_t l = 0; l < L; ++l) loops_[l] = running(case_of(l));
+    for (std::size_t l = 0; l < L; ++l) stretch_.loops[l] = running(case_of(l));
     lay_out();
     for (LoopRun& run : runs_) {
       for (auto* each : {&run.output, &run.argument, &run.phi}) each->assign(signals.size(), 0.0);
@@ -324,32 +299,24 @@ class LoopBatch {
   }
 
   void lay_out() {
+    const auto& loops = stretch_.loops;
+    stretch_.of_output = loops[0].path.of_output();
     stretch_.a = taps([&](std::size_t l) -> auto& { return case_of(l).body->denominator; });
+    stretch_.e = taps([&](std::size_t l) -> auto& { return loops[l].path.e; });
+    stretch_.n = taps([&](std::size_t l) -> auto& { return loops[l].path.n; });
+    stretch_.m = taps([&](std::size_t l) -> auto& { return loops[l].path.m; });
     for (std::size_t k = 0; k < case_of(0).inputs->size(); ++k) {
       stretch_.b.push_back(
           taps([&](std::size_t l) -> auto& { return case_of(l).body->numerators[k]; }));
     }
     stretch_.inputs.resize(stretch_.b.size());
-    for (std::size_t i = 0; i < loops_[0].size(); ++i) {
-      LoopLanes<L> lanes;
-      lanes.of_output = loops_[0][i].path.of_output();
-      lanes.e = taps([&](std::size_t l) -> auto& { return loops_[l][i].path.e; });
-      lanes.n = taps([&](std::size_t l) -> auto& { return loops_[l][i].path.n; });
-      lanes.m = taps([&](std::size_t l) -> auto& { return loops_[l][i].path.m; });
-      for (std::size_t l = 0; l < L; ++l) lanes.runs[l] = &loops_[l][i];
-      stretch_.loops.push_back(std::move(lanes));
-    }
   }
 
   void begin(std::size_t s) {
     const Stretch& stretch = signals_.stretches()[s];
     const std::size_t length = order_ + stretch.end - stretch.first;
     for (auto& input : stretch_.inputs) input.resize(length);
-    stretch_.output.resize(length);
-    for (auto& loop : stretch_.loops) {
-      loop.z.resize(length);
-      loop.phi.resize(length);
-    }
+    for (auto* each : {&stretch_.output, &stretch_.z, &stretch_.phi}) each->resize(length);
     for (std::size_t l = 0; l < L; ++l) begin_lane(l, s, stretch, length);
   }
 
@@ -358,10 +325,10 @@ class LoopBatch {
     std::vector<double> levels;
     levels.reserve(inputs.size());
     for (const Settled& input : inputs) levels.push_back(input.before[s]);
-    const Rest rest = rest_of(*case_of(l).body, loops_[l], levels);
+    const Rest rest = rest_of(*case_of(l).body, stretch_.loops[l], levels);
     if (l < runs_.size() && runs_[l].finite) {
       runs_[l].output_before.push_back(rest.output);
-      runs_[l].phi_before.push_back(rest.phi.front());
+      runs_[l].phi_before.push_back(rest.phi);
     }
     for (std::size_t k = 0; k < inputs.size(); ++k) {
       for (std::size_t n = 0; n < order_; ++n) stretch_.inputs[k][n][l] = levels[k];
@@ -369,13 +336,11 @@ class LoopBatch {
         stretch_.inputs[k][n][l] = inputs[k].values[stretch.first + n - order_];
       }
     }
-    for (std::size_t n = 0; n < length; ++n) stretch_.output[n][l] = rest.output;
-    for (std::size_t i = 0; i < stretch_.loops.size(); ++i) {
-      loops_[l][i].memory = {};
-      for (std::size_t n = 0; n < length; ++n) {
-        stretch_.loops[i].z[n][l] = rest.z[i];
-        stretch_.loops[i].phi[n][l] = rest.phi[i];
-      }
+    stretch_.loops[l].memory = {};
+    for (std::size_t n = 0; n < length; ++n) {
+      stretch_.output[n][l] = rest.output;
+      stretch_.z[n][l] = rest.z;
+      stretch_.phi[n][l] = rest.phi;
     }
   }
 
@@ -385,8 +350,8 @@ class LoopBatch {
     for (std::size_t n = order_; n < end; ++n) {
       const std::size_t to = stretch.first + n - order_;
       run.output[to] = stretch_.output[n][l];
-      run.argument[to] = stretch_.loops.front().z[n][l];
-      run.phi[to] = stretch_.loops.front().phi[n][l];
+      run.argument[to] = stretch_.z[n][l];
+      run.phi[to] = stretch_.phi[n][l];
     }
     std::fill(run.output.begin() + static_cast<std::ptrdiff_t>(stretch.first + end - order_),
               run.output.begin() + static_cast<std::ptrdiff_t>(stretch.end),
@@ -399,7 +364,6 @@ class LoopBatch {
   std::span<LoopRun> runs_;
   std::size_t order_;
   double runaway_;
-  std::array<std::vector<Running>, L> loops_;
   StretchRun<L> stretch_;
 };
 

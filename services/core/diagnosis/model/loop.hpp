@@ -17,11 +17,10 @@ namespace stillhand::diagnosis {
 /// coefficients in the difference basis D = 1 - q^-1:
 ///
 ///   A y_b = B u + E phi(z)
-///   "of the output":  z = y_b,                      E = q^-1 sum_{i<p} e_i D^i          (p
-///   numbers) "inside":         A z = N u + M phi(z),         E = sum_{i<=p} e_i D^i, N alike,
-///                                                   M = q^-1 sum_{i<p} m_i D^i       (3p + 2)
-///
-///   a stop:           z = y_b before it,            E = -1                               (none)
+///   "of the output":  z = y_b,                E = q^-1 sum_{i<p} e_i D^i          (p numbers)
+///   "inside":         A z = N u + M phi(z),   E = sum_{i<=p} e_i D^i, N alike,
+///                                             M = q^-1 sum_{i<p} m_i D^i         (3p + 2)
+///   a stop:           z = y_b before it,      E = -1                             (none)
 ///
 /// M without a term of its own sample: no algebraic loop.
 struct LoopPath {
@@ -34,10 +33,10 @@ struct LoopPath {
   [[nodiscard]] std::vector<double> to_argument(const std::vector<double>& denominator) const;
 };
 
-/// A body, the effects that feed back in it, and what reaches it, by input.
+/// A body, the effect that feeds back in it, and what reaches it, by input.
 struct LoopCase {
   const Body* body = nullptr;
-  std::vector<const Effect*> feedback;
+  const Effect* feedback = nullptr;
   const std::vector<Settled>* inputs = nullptr;
 };
 
@@ -45,10 +44,10 @@ struct LoopCase {
 struct LoopRun {
   bool finite = true;                 ///< false: it ran away
   std::vector<double> output;         ///< y_b
-  std::vector<double> argument;       ///< z of the first nonlinearity
-  std::vector<double> phi;            ///< its phi(z)
+  std::vector<double> argument;       ///< z
+  std::vector<double> phi;            ///< phi(z)
   std::vector<double> output_before;  ///< [stretches] level of y_b before each
-  std::vector<double> phi_before;     ///< [stretches] of the first phi(z)
+  std::vector<double> phi_before;     ///< [stretches] of phi(z)
 };
 
 /// Coefficients that a feedback effect of this nonlinearity has for a body of this order.
@@ -62,9 +61,9 @@ LoopPath loop_path(const Effect& effect, std::size_t order);
 /// As many cases take hardly longer than one.
 inline constexpr std::size_t kLoopLanes = 4;
 
-/// Runs bodies with their nonlinearities, every stretch from the steady state of its inputs'
+/// Runs bodies with their nonlinearity, every stretch from the steady state of its inputs'
 /// levels, Eq. DG-54.  An effect with a range holds phi at its edges, Eq. DG-56.
-/// @param cases  one structure (orders, effects) with different numbers; none is without feedback
+/// @param cases  one structure (orders, effects) with different numbers
 /// @param runs  as many
 void run_loops(std::span<const LoopCase> cases, const Signals& signals, std::span<LoopRun> runs);
 

@@ -52,7 +52,7 @@ Evaluation evaluated(const Model& model, const Signals& signals);
 Eigen::MatrixXd jacobian_of(const Model& model, const Signals& signals, const Evaluation& at);
 
 bool acts_at(const Effect& effect, Stage stage);
-/// Those that act inside the body.
-std::vector<const Effect*> feedback_of(const Model& model);
+/// The one that acts inside the body, nullptr for none.  A model has one at most.
+const Effect* feedback_of(const Model& model);
 
 }  // namespace stillhand::diagnosis

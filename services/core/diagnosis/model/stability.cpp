@@ -98,8 +98,8 @@ bool contracts(const Polynomial& a, const Polynomial& path, const Slopes& slopes
 // Eq. DG-57 d: the loop on its own inputs and on others of the same spectrum.
 class TriedLoop {
  public:
-  TriedLoop(const Model& model, std::vector<const Effect*> feedback, const Signals& signals)
-      : model_(model), feedback_(std::move(feedback)), signals_(signals) {
+  TriedLoop(const Model& model, const Effect& feedback, const Signals& signals)
+      : model_(model), feedback_(feedback), signals_(signals) {
     run_all(model, signals, own_);
     usual_ = largest_of(own_.free.body, 0);
     for (const Stretch& stretch : signals.stretches()) {
@@ -146,14 +146,14 @@ class TriedLoop {
       inputs.push_back(settled(std::move(u), signals_));
       for (double& level : inputs.back().before) level += past * signals_.inputs()[k].deviation;
     }
-    const LoopCase loop{&model_.body, feedback_, &inputs};
+    const LoopCase loop{&model_.body, &feedback_, &inputs};
     LoopRun run;
     run_loops(std::span(&loop, 1), signals_, std::span(&run, 1));
     return run.finite ? std::move(run.output) : std::vector<double>();
   }
 
   const Model& model_;
-  const std::vector<const Effect*> feedback_;
+  const Effect& feedback_;
   const Signals& signals_;
   ModelRun own_;
   double usual_ = 0.0;
@@ -174,10 +174,10 @@ bool is_proved(const Body& body, const Effect& effect) {
 
 bool turns_round(const Model& fitted, const Signals& signals) {
   constexpr double kNone = 0.1;  // of the largest: a stiffness of 0 comes out a little off
-  if (feedback_of(fitted).size() != 1) return false;
+  if (feedback_of(fitted) == nullptr) return false;
   Model model = fitted;
   note_seen(model, signals);
-  const Effect& effect = *feedback_of(model).front();
+  const Effect& effect = *feedback_of(model);
   const Polynomial& a = model.body.denominator;
   const SeenRange& range = effect.seen.front();
   const Slopes slopes = slopes_of(effect, model.body, range.low, range.high);
@@ -193,13 +193,11 @@ Stability stability_of(const Model& fitted, const Signals& signals) {
   Model model = fitted;
   model.body.largest_radius = model.body.slowest_radius = 1.0;
   if (!is_stable(model.body)) return Stability::kRefused;
-  const std::vector<const Effect*> feedback = feedback_of(model);
-  if (feedback.empty()) return Stability::kProved;
-  const bool held =
-      std::ranges::none_of(feedback, [](const Effect* effect) { return effect->seen.empty(); });
-  if (!held || !TriedLoop(model, feedback, signals).is_tame()) return Stability::kRefused;
-  const bool proved = feedback.size() == 1 && is_proved(model.body, *feedback.front());
-  return proved ? Stability::kProved : Stability::kTested;
+  const Effect* feedback = feedback_of(model);
+  if (feedback == nullptr) return Stability::kProved;
+  const bool held = !feedback->seen.empty();
+  if (!held || !TriedLoop(model, *feedback, signals).is_tame()) return Stability::kRefused;
+  return is_proved(model.body, *feedback) ? Stability::kProved : Stability::kTested;
 }
 
 std::string name_of(Stability stability) {
