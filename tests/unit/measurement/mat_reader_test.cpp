@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/libraries/measurement/tables/guarded_table.hpp"
+#include "tests/unit/measurement/columns_in_words.hpp"
 
 namespace stillhand::measurement::mat_reader_test {
 
@@ -44,24 +44,13 @@ matvar_t* fields(const char* name, const std::vector<std::pair<const char*, matv
   return out;
 }
 
-// "title unit: values" of each column of a file that the library of the format wrote, then notes.
 std::vector<std::string> written_and_read(const std::vector<matvar_t*>& variables) {
   const std::string path = testing::TempDir() + "written.mat";
   mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
   for (matvar_t* each : variables) Mat_VarWrite(file, each, MAT_COMPRESSION_NONE);
   for (matvar_t* each : variables) Mat_VarFree(each);
   Mat_Close(file);
-  const TableHead head = mat_reader().head(path);
-  std::vector<std::string> out;
-  for (std::size_t i = 0; i < head.columns.size(); ++i) {
-    out.push_back(head.columns[i].title + " " + head.columns[i].unit + ":");
-    const RawColumns read = mat_reader().read(path, head, {i});
-    for (const double each : read.values.at(0)) {
-      out.back() += " " + std::to_string(static_cast<int>(each));
-    }
-  }
-  out.insert(out.end(), head.notes.begin(), head.notes.end());
-  return out;
+  return made::columns_in_words(mat_reader(), path);
 }
 
 TEST(MatReaderTest, EveryTypeOfNumberIsRead) {
