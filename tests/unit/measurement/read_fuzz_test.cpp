@@ -16,12 +16,15 @@
 #include "apps/libraries/measurement/tables/xdf_table.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "tests/support/session_file.hpp"
+#include "tests/unit/measurement/foreign_bytes.hpp"
 
 // Valid files, spoilt by a seeded generator: each is read into a measurement that check() accepts,
 // or refused with a ConfigError of one line.
 
 namespace stillhand::measurement::read_fuzz_test {
 
+using made::packed;
+using made::xdf_chunk;
 using Random = std::mt19937;
 
 std::size_t below(Random& random, std::size_t limit) {
@@ -214,20 +217,6 @@ TEST(ReadFuzzTest, ASpoiltSessionIsReadOrRefused) {
                  });
 }
 
-template <typename... Values>
-std::string packed(const Values&... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
-  return bytes;
-}
-
-std::string xdf_chunk(std::uint16_t tag, const std::string& content) {
-  const auto length = static_cast<std::uint32_t>(content.size() + sizeof(tag));
-  std::ostringstream chunk;
-  chunk << packed(std::uint8_t{4}, length, tag) << content;
-  return chunk.str();
-}
-
 // Two streams of 150 samples.  The recorder's clock is 0.5 s ahead of the first one's and
 // runs 1.001 times as fast as the second one's.
 std::string good_xdf() {
@@ -266,59 +255,24 @@ TEST(ReadFuzzTest, ASpoiltXdfFileIsReadOrRefused) {
                  {good_xdf()}, spoilt_once);
 }
 
-// Numbers in either byte order; a text has its length in front.
-class Tdms {
- public:
-  explicit Tdms(bool big_endian) : big_(big_endian) {}
-
-  template <typename Value>
-  Tdms& add(Value value) {
-    std::string bytes = packed(value);
-    if (big_) std::ranges::reverse(bytes);
-    text_ += bytes;
-    return *this;
-  }
-  Tdms& text(const std::string& words) {
-    add(static_cast<std::uint32_t>(words.size()));
-    text_ += words;
-    return *this;
-  }
-  Tdms& number(const std::string& name, double value) {
-    return text(name).add(std::uint32_t{10}).add(value);
-  }
-  // Whole numbers of 32 bits, a row in 10 ms; those of "f" are 10 and half of the raw number.
-  Tdms& channel(const std::string& name) {
-    const bool scaled = name == "f";
-    text("/'g'/'" + name + "'").add(std::uint32_t{20}).add(std::uint32_t{3}).add(std::uint32_t{1});
-    add(std::uint64_t{50}).add(std::uint32_t{scaled ? 5u : 1u}).number("wf_increment", 0.01);
-    if (!scaled) return *this;
-    text("NI_Number_Of_Scales").add(std::uint32_t{7}).add(std::uint32_t{1});
-    text("NI_Scale[0]_Scale_Type").add(std::uint32_t{0x20}).text("Linear");
-    return number("NI_Scale[0]_Linear_Slope", 0.5).number("NI_Scale[0]_Linear_Y_Intercept", 10.0);
-  }
-  [[nodiscard]] const std::string& bytes() const { return text_; }
-
- private:
-  bool big_;
-  std::string text_;
-};
-
+// Whole numbers of 32 bits, a row in 10 ms; those of "f" are 10 and half of the raw number.
 std::string good_tdms(bool big_endian) {
-  std::ostringstream file;
+  std::string file;
   for (int segment = 0; segment < 3; ++segment) {
-    Tdms meta(big_endian);
-    Tdms raw(big_endian);
-    Tdms lead(big_endian);
-    if (segment == 0) meta.add(std::uint32_t{2}).channel("a_y").channel("f");
+    made::Tdms meta(big_endian);
+    made::Tdms raw(big_endian);
+    if (segment == 0) {
+      meta.add(std::uint32_t{2}).object("/'g'/'a_y'", 3, 50, 1).number("wf_increment", 0.01);
+      meta.object("/'g'/'f'", 3, 50, 5).number("wf_increment", 0.01);
+      meta.whole("NI_Number_Of_Scales", 1).words("NI_Scale[0]_Scale_Type", "Linear");
+      meta.number("NI_Scale[0]_Linear_Slope", 0.5).number("NI_Scale[0]_Linear_Y_Intercept", 10.0);
+    }
     for (const int levels : {7, 5}) {
       for (int i = 50 * segment; i < 50 * segment + 50; ++i) raw.add(std::int32_t{i % levels});
     }
-    const std::uint32_t contents = (segment == 0 ? 2u : 0u) | 8u | (big_endian ? 64u : 0u);
-    const std::uint64_t raw_at = meta.bytes().size();
-    lead.add(std::uint32_t{4713}).add(raw_at + raw.bytes().size()).add(raw_at);
-    file << "TDSm" << packed(contents) << lead.bytes() << meta.bytes() << raw.bytes();
+    file += meta.segment(segment == 0 ? 2u | 8u : 8u, raw.bytes());
   }
-  return file.str();
+  return file;
 }
 
 TEST(ReadFuzzTest, ASpoiltTdmsFileIsReadOrRefused) {

@@ -296,12 +296,13 @@ std::unique_ptr<TableFile> xdf_table(const std::string& bytes, const std::string
   File file = parse(std::as_bytes(std::span(bytes)), path, most_values);
   TableHead head{.path = path, .form = "XDF", .columns = {}, .has_times = true, .notes = {}};
   std::vector<XdfTable::Column> columns;
+  std::map<std::string, int> streams_of_name;
+  for (const Stream& stream : file.streams) ++streams_of_name[stream.name];
   for (std::size_t s = 0; s < file.streams.size(); ++s) {
-    const Stream& stream = file.streams[s];
-    const bool shared = std::ranges::count(file.streams, stream.name, &Stream::name) > 1;
-    const std::string name = shared ? fmt::format("{} {}", stream.name, stream.id) : stream.name;
+    Stream& stream = file.streams[s];
+    if (streams_of_name[stream.name] > 1) stream.name += fmt::format(" {}", stream.id);
     for (std::size_t c = 0; c < stream.values.size() && !stream.time_s.empty(); ++c) {
-      const std::string title = name + "." + stream.labels[c];
+      const std::string title = stream.name + "." + stream.labels[c];
       head.columns.push_back({title, title, stream.units[c], stream.time_s.size()});
       columns.emplace_back(s, c);
     }
