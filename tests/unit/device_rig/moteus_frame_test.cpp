@@ -136,12 +136,16 @@ TEST(StepOfTest, IsTheOneOfTheDocument) {
       {kVoltage, {0.5, 0.1, 0.001}},
       {kTemperature, {1.0, 0.1, 0.001}},
       {kCommandTimeout, {0.01, 0.001, 0.000001}},
-      {kAnalog1, {1.0 / 127, 1.0 / 32767, 1.0 / 2147483647}}};
+      {kAnalog1, {1.0 / 127, 1.0 / 32767, 1.0 / 2147483647}},
+      {kMode, {1.0, 1.0, 1.0}}};
   for (const auto& [address, steps] : cases) {
     for (std::uint8_t i = 0; i < 3; ++i) {
       EXPECT_DOUBLE_EQ(step_of(address, static_cast<Resolution>(i)), steps[i]) << address;
     }
+    EXPECT_EQ(step_of(address, Resolution::kFloat), 1.0) << address;
   }
+  EXPECT_TRUE(has_nan(kPosition));
+  EXPECT_FALSE(has_nan(kMode));
 }
 
 }  // namespace stillhand::device_rig::moteus::moteus_frame_test

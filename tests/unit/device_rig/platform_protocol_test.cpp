@@ -21,7 +21,7 @@ constexpr const char* kPlainState =
     "53485053020002000900000007000000cdab34127b14ae47e17aa43f9a9999999999c9bf000000000000f43f"
     "000000001a709752";
 // A position of NaN and of infinity, a velocity of NaN and of -infinity, an acceleration of
-// infinity; each with its own checksum.
+// infinity; a command's magic, version 3 and stage 4; each with its own checksum.
 constexpr const char* kPlainSenseless[]{
     "53485053020002000900000007000000cdab3412000000000000f87f00000000000000000000000000000000"
     "0000000064e9a108",
@@ -32,7 +32,13 @@ constexpr const char* kPlainSenseless[]{
     "53485053020002000900000007000000cdab34120000000000000000000000000000f0ff0000000000000000"
     "0000000004500325",
     "53485053020002000900000007000000cdab341200000000000000000000000000000000000000000000f07f"
-    "0000000002eee11f"};
+    "0000000002eee11f",
+    "53485043020002000900000007000000cdab34127b14ae47e17aa43f9a9999999999c9bf000000000000f43f"
+    "0000000054d35b6b",
+    "53485053030002000900000007000000cdab34127b14ae47e17aa43f9a9999999999c9bf000000000000f43f"
+    "000000007848bf78",
+    "53485053020004000900000007000000cdab34127b14ae47e17aa43f9a9999999999c9bf000000000000f43f"
+    "00000000fc66e022"};
 // The state 3 with fault bits 5.
 constexpr const char* kPlainUnmeasured =
     "53485053020003000900000007000000cdab34127b14ae47e17aa43f0000000000000000000000000000f87f"
@@ -48,7 +54,7 @@ constexpr SetPoint kPoint{.order = PlatformOrder::kFollow,
                           .velocity_m_s = -0.25,
                           .acceleration_m_s2 = 1.5};
 
-TEST(PlainPlatformTest, AStateWithoutANumberIsRefusedAndAnAccelerationMayBeUnmeasured) {
+TEST(PlainPlatformTest, AStateWithoutSenseIsRefusedAndAnAccelerationMayBeUnmeasured) {
   for (const char* const senseless : kPlainSenseless) {
     EXPECT_FALSE(plain::read_reply(bytes(senseless)).whole) << senseless;
   }
@@ -135,6 +141,25 @@ TEST(MoogPlatformTest, TheReplyIsRead) {
   EXPECT_EQ(state, 3u);
   EXPECT_EQ(sut.stage, PlatformStage::kFollowing);
   EXPECT_NEAR(sut.position_m, 0.04, 1e-8);  // a float of 0.04 has an error below 2^-29
+}
+
+// The low nibble is the machine's state; 8 and above, and any fault bit, are a fault.
+TEST(MoogPlatformTest, EveryStateOfTheMachineIsAStage) {
+  auto reply = bytes(kMoogReply);
+  std::uint32_t state = 0;
+  for (std::uint8_t machine = 0; machine < 16; ++machine) {
+    reply[11] = 0x30 | machine;
+    const PlatformStage expected = machine == 2   ? PlatformStage::kHolding
+                                   : machine == 3 ? PlatformStage::kFollowing
+                                   : machine < 8  ? PlatformStage::kOff
+                                                  : PlatformStage::kFault;
+    EXPECT_EQ(moog::read_reply(reply, state).stage, expected) << int{machine};
+    EXPECT_EQ(state, machine);
+  }
+  reply[11] = 3;
+  reply[3] = 1;
+  EXPECT_EQ(moog::read_reply(reply, state).stage, PlatformStage::kFault);
+  EXPECT_EQ(moog::read_reply(reply, state).fault, 1u);
 }
 
 TEST(MoogPlatformTest, APositionWithoutANumberIsRefused) {

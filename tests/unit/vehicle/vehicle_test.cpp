@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/tick.hpp"
@@ -150,6 +153,31 @@ TEST(VehicleTest, ALostStickIsHeldAndThenCountsAsCentred) {
   }
   for (int n = 0; n < 100; ++n) sut.step(lost);  // 20 lags: exp(-20) = 2e-9
   EXPECT_NEAR(sut.step(lost).acceleration_m_s2, 0.0, 1e-8);
+}
+
+// README, "Presets".
+TEST(VehicleTest, APresetIsTheRowOfItsTable) {
+  struct Row {
+    const char* name;
+    bool speed_follows;
+    std::int64_t order;
+    double lag_s, natural_hz, damping_ratio, delay_s;
+  };
+  const VehicleConfig d;  // of the dynamics that a row does not have
+  const Row rows[]{{"first_order", false, 1, 0.2, d.natural_hz, d.damping_ratio, 0.1},
+                   {"second_order", false, 2, d.lag_s, 2.0, 0.6, 0.1},
+                   {"excavator", true, 2, d.lag_s, 1.5, 0.3, 0.15},
+                   {"wheelchair", true, 1, 0.5, d.natural_hz, d.damping_ratio, 0.06},
+                   {"aircraft_roll", true, 1, 0.4, d.natural_hz, d.damping_ratio, 0.1}};
+  ASSERT_EQ(preset_names().size(), std::size(rows));
+  for (const Row& row : rows) {
+    const VehicleConfig sut = preset(row.name);
+    EXPECT_EQ(std::tuple(sut.speed_follows, sut.order, sut.lag_s, sut.natural_hz, sut.damping_ratio,
+                         sut.delay_s),
+              std::tuple(row.speed_follows, row.order, row.lag_s, row.natural_hz, row.damping_ratio,
+                         row.delay_s))
+        << row.name;
+  }
 }
 
 TEST(VehicleTest, AnUnknownPresetAndAFieldOutOfRangeAreNamed) {
