@@ -55,6 +55,6 @@ double step_of(std::uint32_t address, Resolution resolution) noexcept {
   return 1.0;
 }
 
-bool has_nan(std::uint32_t address) noexcept { return steps_of(address).int8 != 1.0; }
+bool has_nan(std::uint32_t address) noexcept { return steps_of(address).int16 != 1.0; }
 
 }  // namespace stillhand::device_rig::moteus

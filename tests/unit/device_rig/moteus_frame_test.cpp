@@ -145,7 +145,8 @@ TEST(StepOfTest, IsTheOneOfTheDocument) {
     EXPECT_EQ(step_of(address, Resolution::kFloat), 1.0) << address;
   }
   EXPECT_TRUE(has_nan(kPosition));
-  EXPECT_FALSE(has_nan(kMode));
+  EXPECT_TRUE(has_nan(kTemperature)) << "its step is 1 degC in one byte alone";
+  for (const auto plain : {kMode, kFault, kMilliseconds}) EXPECT_FALSE(has_nan(plain));
 }
 
 }  // namespace stillhand::device_rig::moteus::moteus_frame_test
