@@ -106,6 +106,11 @@ TEST(EffectSizesTest, ALoopOfTheOutputHasItsStaticForceAndStiffness) {
   const Sized sides(
       {"asymmetry", "slopes of the output", {}, {constant("threshold", "N", 1.0)}, {0.01, -0.005}});
   EXPECT_NEAR(sides.value("stiffness_ratio"), (a - 0.01) / (a + 0.01), 1e-12);
+  // z^2 has the slopes 2 z and -2 z at the largest z that was seen; M = E over the threshold.
+  const Sized square(made::effect_of("asymmetry", "square of the output", {},
+                                     {constant("threshold", "N", 2.0)}, {1e-3, 0.0}));
+  const double z = largest_deflection(square.line.run.body, 0.0, square.signals) / 2.0;
+  EXPECT_NEAR(square.value("stiffness_ratio"), (a - 1e-3 * z) / (a + 1e-3 * z), 1e-12);
 }
 
 // The slope of phi by central differences at the largest output that was seen: h^2/6 of its third

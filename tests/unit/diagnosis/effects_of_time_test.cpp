@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "services/core/contract/units.hpp"
@@ -55,6 +56,40 @@ TEST(EffectsOfTimeTest, NoiseOfAnyColourIsNoTone) {
 TEST(EffectsOfTimeTest, WhiteNoiseIsNoDrift) {
   for (std::uint64_t seed = 60; seed < 70; ++seed) {
     EXPECT_TRUE(proposed_by("drift", answer_with_noise(made::white(kCount, seed))).empty()) << seed;
+  }
+}
+
+// Eq. DG-32: a^2/3 of the three lowest half-cosines is 12 b^2/12 of the next twelve where a^2 is
+// 3 b^2.  At 1 Hz, from 50 s on; sums over 2000 samples are orthogonal to 1/1000.
+TEST(EffectsOfTimeTest, ADriftHoldsTwelveTimesThePowerOfTheNextHalfCosines) {
+  struct Row {
+    int slow, next;
+    double ratio;  ///< a^2/b^2
+    bool is;
+  };
+  for (const Row& row : {Row{1, 4, 3.1, true},
+                         {1, 4, 2.9, false},
+                         {3, 15, 3.1, true},
+                         {3, 15, 2.9, false},
+                         {1, 16, 1.0, true},
+                         {4, 9, 9.0, false}}) {
+    std::vector<double> y(2001);
+    for (std::size_t n = 0; n < y.size(); ++n) {
+      const double turn = std::numbers::pi * static_cast<double>(n) / 2000.0;
+      y[n] = std::sqrt(row.ratio) * std::cos(row.slow * turn) + std::cos(row.next * turn);
+    }
+    auto measurement = made::measurement_of({{"u", "V", made::white(2001, 1)}, {"y", "N", y}}, 1.0);
+    measurement.stretches[0].start_s = 50.0;
+    const Signals signals(measurement, {"u"}, "y");
+    Model model = made::model_of({{{0.0}}, {1.0}});
+    model.rate_hz = 1.0;
+    const Blocks blocks = make_blocks(signals);
+    const ImpulseResponse none;
+    const auto all = effect_kind("drift").proposed(Screening(model, signals, blocks, none));
+    EXPECT_EQ(
+        std::ranges::any_of(all, [](const auto& sut) { return sut.effect.form == "slow cosines"; }),
+        row.is)
+        << row.slow << ", " << row.next << ", " << row.ratio;
   }
 }
 

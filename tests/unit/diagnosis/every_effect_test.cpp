@@ -182,6 +182,16 @@ TEST(EveryEffectTest, EvidenceGivesTheNumberInItsUnit) {
   EXPECT_NE(says(ripple).find("0.4 rad"), std::string::npos);
   EXPECT_NE(says(ripple).find("theta"), std::string::npos);
   EXPECT_NE(says(ripple).find("5 (output unit)"), std::string::npos);
+  // Within 2 % of its square, DG-25, it is called so.
+  const auto square = [&](double share) {
+    return says(made::effect_of("asymmetry", "square at the input", {"u"},
+                                {{"square_share", "-", share}, {"largest_input", "V", 3.0}}));
+  };
+  for (const double share : {0.981, 1.019}) {
+    EXPECT_EQ(square(share), "u acts by its square, within 2 % of it at 3 V");
+  }
+  EXPECT_EQ(square(0.979), "u acts by itself and its square, 0.979 of the square at 3 V");
+  EXPECT_EQ(square(1.03), "u acts by itself and its square, 1.03 of the square at 3 V");
   // The sign of a friction is in the words, its size in the number.
   const Effect friction{"coulomb_friction", "sign", {"omega"}, {}, {-0.4}};
   EXPECT_NE(says(friction).find("0.4 (output unit) against"), std::string::npos);

@@ -242,7 +242,8 @@ TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
                          signals, {}, columns),
                std::out_of_range);
   const std::vector<Parameter> heights(3, constant("height_1", "-", 0.0));
-  for (const double last : {2.0, 0.5}) {  // a height too few, and knots that do not ascend
+  // A height too few, and knots that do not ascend.
+  for (const double last : {2.0, 1.0, 0.5}) {
     Effect inside =
         made::effect_of("free_form", "curve inside the body", {},
                         {knot("knot_1", 0.0), knot("knot_2", 1.0), knot("knot_3", last)});
@@ -310,14 +311,14 @@ TEST(FreeFormTest, TheLastKnotIsTheLargestArgumentWhateverRoundingSays) {
 }
 
 // Fifteen knots at even steps where arguments are even; straight ends and the bend at 0 are held,
-// the others may move by five times the range of 1.
+// the others may move by five times the range of 2.
 TEST(FreeFormTest, ACurveHasFifteenKnotsAndHoldsThree) {
   constexpr std::size_t kArguments = 1401;
   std::vector<double> z(kArguments);
   std::vector<double> phi(kArguments);
   for (std::size_t n = 0; n < kArguments; ++n) {
     z[n] = (static_cast<double>(n) - 700.0) / 700.0;
-    phi[n] = std::abs(z[n]);
+    phi[n] = 2.0 * std::abs(z[n]);
   }
   const EffectKind& kind = effect_kind("free_form");
   const auto sut = kind.drawn_after(z, phi, std::vector<double>(kArguments, 1.0));
@@ -326,10 +327,12 @@ TEST(FreeFormTest, ACurveHasFifteenKnotsAndHoldsThree) {
   for (std::size_t k = 0; k < 15; ++k) {
     const Parameter& height = sut->parameters[15 + k];
     EXPECT_NEAR(sut->value(k), (static_cast<double>(k) - 7.0) / 7.0, 2e-3) << "one sample";
-    EXPECT_EQ(height.value, std::abs(sut->value(k)));
+    EXPECT_EQ(height.value, 2.0 * std::abs(sut->value(k)));
+    EXPECT_EQ(sut->parameters[k].name, "knot_" + std::to_string(k + 1));
+    EXPECT_EQ(height.name, "height_" + std::to_string(k + 1));
     const bool held = k == 0 || k == 7 || k == 14;
-    EXPECT_NEAR(height.upper - height.value, held ? 0.0 : 5.0, 1e-12) << k;
-    EXPECT_NEAR(height.value - height.lower, held ? 0.0 : 5.0, 1e-12) << k;
+    EXPECT_NEAR(height.upper - height.value, held ? 0.0 : 10.0, 1e-12) << k;
+    EXPECT_NEAR(height.value - height.lower, held ? 0.0 : 10.0, 1e-12) << k;
   }
   // Fourteen that weigh are too few for fifteen knots.
   z.resize(15);
@@ -360,6 +363,37 @@ TEST(FreeFormTest, ASmoothCurveThroughAParabolaIsTheParabola) {
   }
 }
 
+// Slopes at the inner knots: 1 - 1/3 (1) = 2/3 and 0 + 1 (2) = 2.  Between them Hermite's cubic,
+// 1 + 2 (2/3 (t^3 - 2 t^2 + t) + 2 (t^3 - t^2)), t = (x - 1)/2.
+TEST(FreeFormTest, BetweenKnotsASmoothCurveIsTheCubicOfItsSlopes) {
+  Effect sut{"free_form", "curve of the input", {"u"}, {}, {}};
+  for (const double x : {0.0, 1.0, 3.0, 4.0}) sut.parameters.push_back(constant("knot_", "V", x));
+  for (const double y : {0.0, 1.0, 1.0, 4.0}) sut.parameters.push_back(constant("height_", "V", y));
+  const EffectKind& kind = effect_kind("free_form");
+  EXPECT_NEAR(kind.mapped(sut, 1.5), 1.0, 1e-15);
+  EXPECT_NEAR(kind.mapped(sut, 2.0), 2.0 / 3.0, 1e-15);
+  EXPECT_NEAR(kind.mapped(sut, 2.5), 0.5, 1e-15);
+}
+
+// Errors e of both signs wherever no knot is leave 0.2 of the deviation of the force, sqrt(1/3
+// + e^2), at e = 0.12.
+TEST(FreeFormTest, ACurveLeavesLessThanAFifthOfTheForce) {
+  constexpr std::size_t kArguments = 1401;
+  for (const double error : {0.115, 0.121}) {
+    std::vector<double> z(kArguments);
+    std::vector<double> phi(kArguments);
+    for (std::size_t n = 0; n < kArguments; ++n) {
+      z[n] = (static_cast<double>(n) - 700.0) / 700.0;
+      phi[n] = z[n];
+      // Knots lie at every hundredth or, by rounding, next to it.
+      if (n % 100 > 1 && n % 100 < 99) phi[n] += n % 2 == 0 ? error : -error;
+    }
+    const auto sut =
+        effect_kind("free_form").drawn_after(z, phi, std::vector<double>(kArguments, 1.0));
+    EXPECT_EQ(sut.has_value(), error < 0.118) << error;
+  }
+}
+
 TEST(FreeFormTest, AForceWithMemoryIsNoCurve) {
   const std::vector<double> z = made::ride(2000, 8);
   std::vector<double> late(z.size());
@@ -367,17 +401,26 @@ TEST(FreeFormTest, AForceWithMemoryIsNoCurve) {
   EXPECT_FALSE(effect_kind("free_form").drawn_after(z, late, std::vector<double>(z.size(), 1.0)));
 }
 
-// A limit on one side: straight up to 0, level above.
+// A limit on one side: straight up to 0, level above.  Then slopes of 0.5, 1.5, 1.5, 0.5 and -0.5,
+// either way up and about; a level curve has none.
 TEST(FreeFormTest, TheEvidenceOfACurveInsideIsItsSlopes) {
-  Effect sut{"free_form", "curve inside the body", {}, {}, {}};
-  const auto append = [&](const char* name, double value) {
-    sut.parameters.push_back(constant(name, "-", value));
+  const auto said_of = [](const std::vector<double>& heights) {
+    Effect sut{"free_form", "curve inside the body", {}, {}, {}};
+    for (const double x : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+      sut.parameters.push_back(constant("knot_", "-", x));
+    }
+    for (const double y : heights) sut.parameters.push_back(constant("height_", "-", y));
+    return effect_kind("free_form").evidence(sut);
   };
-  for (const double knot : {-2.0, -1.0, 0.0, 1.0, 2.0}) append("knot_", knot);
-  for (const double height : {-2.0, -1.0, 0.0, 0.0, 0.0}) append("height_", height);
-  EXPECT_EQ(effect_kind("free_form").evidence(sut),
-            "no named kind bends as the curve inside the body does; its low end has 100 %, its "
-            "high end 0 % of its steepest slope");
+  const auto slopes = [](const std::string& low, const std::string& high) {
+    return "no named kind bends as the curve inside the body does; its low end has " + low +
+           ", its high end " + high + " of its steepest slope";
+  };
+  EXPECT_EQ(said_of({-2.0, -1.0, 0.0, 0.0, 0.0}), slopes("100 %", "0 %"));
+  EXPECT_EQ(said_of({0.0, 1.0, 3.0, 4.0, 4.0}), slopes("33 %", "-33 %"));
+  EXPECT_EQ(said_of({0.0, -1.0, -3.0, -4.0, -4.0}), slopes("33 %", "-33 %"));
+  EXPECT_EQ(said_of({4.0, 4.0, 3.0, 1.0, 0.0}), slopes("-33 %", "33 %"));
+  EXPECT_EQ(said_of({1.0, 1.0, 1.0, 1.0, 1.0}), slopes("0 %", "0 %"));
 }
 
 }  // namespace stillhand::diagnosis::free_form_test

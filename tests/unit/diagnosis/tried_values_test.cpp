@@ -108,6 +108,11 @@ std::vector<Tried> all_tried() {
       {of("bilinear", "through the body", {"u", "theta"},
           {mean("centre_1", "u"), mean("centre_2", "theta")}, {0.2, -0.1, 0.1})},
       {of("asymmetry", "square, beside the body", {"theta"}, {mean("centre", "theta")}, {0.1})},
+      {of("asymmetry", "square at the input", {"u"},
+          {{"", "", 1, -2, 2}, constant("largest_input", "", largest)})},
+      // No threshold changes |z| or z^2 but by a factor: it is given.
+      {of("asymmetry", "slopes of the output", {}, {constant("", "", y)}, {-1e-4, 0.0})},
+      {of("asymmetry", "square of the output", {}, {constant("", "", y)}, {-1e-4, 0.0})},
       {of("asymmetry", "slopes at the input", {"u"}, {change("", 0.15, 0.9)})},
       {of("asymmetry", "slopes at the output", {}, {change("", 0.15, 0.9)})},
       {of("nonlinear_stiffness", "at the output", {}, {change("", 0.1 * limit, limit)})},
