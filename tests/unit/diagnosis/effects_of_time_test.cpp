@@ -170,6 +170,34 @@ TEST(EffectsOfTimeTest, ABurstIsWhatItsWindowsSay) {
 }
 
 // Noise whose power changes by a factor of nine, and noise with heavy tails: no burst.
+// Stretches of a window each, five rows at 1 Hz, are judged from twenty on.  The two largest of a
+// window's samples do not count, and the first, in which a stretch begins, is 0.
+TEST(EffectsOfTimeTest, AWindowHasFiveSamplesAndStandsOutFromNineteenOthers) {
+  const auto count_of = [](std::size_t windows, std::size_t rows, std::size_t loud) {
+    std::vector<double> y(windows * rows);
+    std::vector<Stretch> stretches;
+    for (std::size_t n = 0; n < y.size(); ++n) {
+      const bool burst = n / rows == 9 && n % rows >= rows - loud;
+      y[n] = (n % 2 == 0 ? 1.0 : -1.0) * (burst ? 10.0 : 1.0);
+      if (n % rows == 0) stretches.push_back({n, n + rows, 2.0 * static_cast<double>(n)});
+    }
+    auto measurement =
+        made::measurement_of({{"u", "V", made::white(y.size(), 1)}, {"y", "N", std::move(y)}}, 1.0);
+    measurement.stretches = stretches;
+    const Signals signals(measurement, {"u"}, "y");
+    Model model = made::model_of({{{0.0}}, {1.0}});
+    model.rate_hz = 1.0;
+    const ImpulseResponse none;
+    const Blocks blocks = make_blocks(signals);
+    return effect_kind("transients").proposed(Screening(model, signals, blocks, none)).size();
+  };
+  EXPECT_EQ(count_of(20, 5, 4), 1u);
+  EXPECT_EQ(count_of(20, 5, 3), 1u);
+  EXPECT_EQ(count_of(20, 5, 2), 0u);
+  EXPECT_EQ(count_of(19, 5, 4), 0u);
+  EXPECT_EQ(count_of(24, 4, 3), 0u) << "no stretch holds a window";
+}
+
 TEST(EffectsOfTimeTest, NoiseIsNoBurst) {
   for (std::uint64_t seed = 80; seed < 86; ++seed) {
     std::vector<double> noise = made::white(kCount, seed);

@@ -182,6 +182,17 @@ TEST(EveryEffectTest, EvidenceGivesTheNumberInItsUnit) {
   EXPECT_NE(says(ripple).find("0.4 rad"), std::string::npos);
   EXPECT_NE(says(ripple).find("theta"), std::string::npos);
   EXPECT_NE(says(ripple).find("5 (output unit)"), std::string::npos);
+  // Of many bursts the first five.
+  Effect bursts{"transients", "isolated bursts", {}, {}, {}};
+  const auto add_burst = [&](double begin_s) {
+    bursts.parameters.push_back(constant("begin", "s", begin_s));
+    bursts.parameters.push_back(constant("end", "s", begin_s + 0.5));
+  };
+  for (const double begin_s : {3.0, 8.0}) add_burst(begin_s);
+  EXPECT_EQ(says(bursts),
+            "2 isolated burst(s), from 3 s, 8 s; the errors are of the rest of the record");
+  for (const double begin_s : {11.0, 12.0, 13.0, 14.0}) add_burst(begin_s);
+  EXPECT_TRUE(says(bursts).starts_with("6 isolated burst(s), from 3 s, 8 s, 11 s, 12 s, 13 s;"));
   // Within 2 % of its square, DG-25, it is called so.
   const auto square = [&](double share) {
     return says(made::effect_of("asymmetry", "square at the input", {"u"},

@@ -23,14 +23,16 @@ Signals signals_of(std::vector<double> y, double rate_hz = made::kRateHz) {
   for (std::size_t n = 0; n < count; ++n) {
     swept[n] = 0.01 * std::abs(static_cast<double>(n % 400) - 200.0);
   }
-  return {made::measurement_of({{"u", "V", made::ride(count, 1)},
-                                {"theta", "rad", made::ride(count, 2, 0.1, 1.0)},
-                                {"temp", "degC", made::ride(count, 3, 0.1, 1.0)},
-                                {"swept", "rad", swept},
-                                {"y", "N", std::move(y)}},
-                               rate_hz),
-          {"u"},
-          "y"};
+  // Deviations of 2 and 0.5: by 1 a bound that is divided by it is one that is multiplied.
+  return {
+      made::measurement_of({{"u", "V", made::scaled_to(made::ride(count, 1), 2.0)},
+                            {"theta", "rad", made::scaled_to(made::ride(count, 2, 0.1, 1.0), 0.5)},
+                            {"temp", "degC", made::ride(count, 3, 0.1, 1.0)},
+                            {"swept", "rad", swept},
+                            {"y", "N", std::move(y)}},
+                           rate_hz),
+      {"u"},
+      "y"};
 }
 
 // Of the kind, next to the body and a path that does nothing: with another effect in the model no
@@ -108,8 +110,6 @@ std::vector<Tried> all_tried() {
       {of("bilinear", "through the body", {"u", "theta"},
           {mean("centre_1", "u"), mean("centre_2", "theta")}, {0.2, -0.1, 0.1})},
       {of("asymmetry", "square, beside the body", {"theta"}, {mean("centre", "theta")}, {0.1})},
-      {of("asymmetry", "square at the input", {"u"},
-          {{"", "", 1, -2, 2}, constant("largest_input", "", largest)})},
       // No threshold changes |z| or z^2 but by a factor: it is given.
       {of("asymmetry", "slopes of the output", {}, {constant("", "", y)}, {-1e-4, 0.0})},
       {of("asymmetry", "square of the output", {}, {constant("", "", y)}, {-1e-4, 0.0})},
@@ -184,6 +184,68 @@ TEST(TriedValuesTest, OneThatIsTrueIsProposedWithItsBounds) {
       SCOPED_TRACE(value);
       expect_proposed_as_it_is(each.truth, each.rate_hz, 3e-4 * each.unit);
     }
+  }
+}
+
+// The column of each share of a square is the same but for a factor: bounds alone are certain.
+TEST(TriedValuesTest, ASquareMayActTwiceEitherWay) {
+  const Signals signals = signals_of(made::white(kCount, 4));
+  for (const Proposal& sut : proposed("asymmetry", signals, made::two_pole_body())) {
+    if (sut.effect.form != "square at the input") continue;
+    double largest = 0.0;
+    for (const double u : signals.at("u").values) largest = std::max(largest, std::abs(u));
+    EXPECT_EQ(sut.effect.parameters[0].lower, -2.0);
+    EXPECT_EQ(sut.effect.parameters[0].upper, 2.0);
+    EXPECT_EQ(sut.effect.value(1), largest);
+    return;
+  }
+  FAIL() << "none proposed";
+}
+
+// Limits keep their bounds in the fit: three times the largest size, a tenth of the middle one or a
+// twentieth of where the limit began: 0.97 of an end of the range, or with 95 % of the samples
+// within it.
+TEST(TriedValuesTest, ALimitIsSoughtFarBeyondTheOutputAndCloseToZero) {
+  const Signals signals = output_of(made::effect_of(
+      "output_saturation", "hard, two limits", {},
+      {{"upper_limit", "N", 0.9, 0.01, 9.0}, {"lower_limit", "N", -0.5, -9.0, 0.0}}));
+  const std::vector<double>& y = signals.output().values;
+  std::vector<double> size = y;
+  for (double& each : size) each = std::abs(each);
+  const double most = 3.0 * quantile_of(size, 1.0);
+  std::size_t checked = 0;
+  for (const Proposal& sut : proposed("output_saturation", signals, made::two_pole_body())) {
+    const auto& limits = sut.effect.parameters;
+    EXPECT_DOUBLE_EQ(limits[0].upper, most) << sut.effect.form;
+    if (limits.size() == 1) {
+      EXPECT_DOUBLE_EQ(limits[0].lower, 0.1 * quantile_of(size, 0.5)) << sut.effect.form;
+    } else {
+      // Clipped, so that the quantiles are the ends themselves.
+      const bool within = limits[0].lower < 0.049 * quantile_of(y, 1.0);
+      EXPECT_NEAR(limits[0].lower, 0.05 * (within ? 0.97 : 1.0) * 0.9, 1e-12);
+      EXPECT_NEAR(limits[1].upper, 0.05 * (within ? 0.97 : 1.0) * -0.5, 1e-12);
+      EXPECT_DOUBLE_EQ(limits[1].lower, -most);
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 0u);
+}
+
+// h is a share of the deviation of the output that it leaves: a fixed point.
+TEST(TriedValuesTest, PlayAtTheOutputIsAShareOfItsDeviation) {
+  const Signals unmapped = signals_of(made::white(kCount, 4));
+  const std::vector<double> body =
+      free_run(made::model_of(made::two_pole_body()), unmapped).prediction;
+  for (const double share : {0.1, 0.2, 0.4, 0.8}) {
+    double y = 1.0;
+    for (int i = 0; i < 60; ++i) {
+      std::vector<double> left = body;
+      for (double& each : left) each -= std::clamp(each, -share * y, share * y);
+      y = deviation_of(left);
+    }
+    expect_proposed_as_it_is(
+        {"dead_zone", "at the output", {}, {{"", "", share * y, 0.0, 3.0 * y}}, {}}, made::kRateHz,
+        3e-4 * y);
   }
 }
 
