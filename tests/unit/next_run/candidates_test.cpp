@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "services/core/next_run/tie.hpp"
 #include "tests/unit/next_run/two_channels.hpp"
 
@@ -138,6 +140,32 @@ TEST(CandidatesTest, ARollIsTiltedAndAStickMoved) {
   const diagnosis::Signals signals(recording, {"u"}, "y");
   EXPECT_THAT(other_ways(made::candidate("roll"), made::candidate("theta"), signals),
               ElementsAre(HasSubstr("tilt the platform"), HasSubstr("with the stick free")));
+}
+
+TEST(CandidatesTest, WhatGoesWithTimeNeedNotComeAgain) {
+  auto recording = made::measured(1000, 8, 1);
+  recording.channels[1].unit = "m/s^2";
+  const diagnosis::Signals signals(recording, {"u"}, "y");
+  Candidate drift = made::candidate("x");
+  drift.model.effects[0] = {"drift", "linear", {}, {}, {1.0}};
+  EXPECT_EQ(name_of(drift), "drift (linear)");
+  EXPECT_THAT(other_ways(drift, made::candidate("x"), signals),
+              ElementsAre(HasSubstr("after a pause: drift goes"), HasSubstr("move x too")));
+  EXPECT_THAT(other_ways(made::candidate("z"), drift, signals),
+              ElementsAre("move z on its own", HasSubstr("after a pause")));
+}
+
+// A rival that takes part must have been finite; of one cause, the form that stands first.
+TEST(CandidatesTest, OfOneCauseOneFormIsARival) {
+  diagnosis::Effect other_form = kStatic;
+  other_form.form = "lagged";
+  other_form.parameters = {{"lag", "s", 0.1, 0.01, 1.0}};
+  EXPECT_THAT(candidates_among({tried(kStatic, 2), tried(other_form, 2)}, kSlopes), IsEmpty());
+  diagnosis::Effect of_z = kStatic;
+  of_z.channels = {"z"};
+  diagnosis::Trial ran_away = tried(of_z, 2);
+  ran_away.rmse = HUGE_VAL;
+  EXPECT_THAT(candidates_among({tried(kStatic, 2), ran_away}, kSlopes), IsEmpty());
 }
 
 }  // namespace stillhand::next_run::candidates_test
