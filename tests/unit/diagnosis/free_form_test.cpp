@@ -421,6 +421,7 @@ TEST(FreeFormTest, TheEvidenceOfACurveInsideIsItsSlopes) {
   EXPECT_EQ(said_of({0.0, -1.0, -3.0, -4.0, -4.0}), slopes("33 %", "-33 %"));
   EXPECT_EQ(said_of({4.0, 4.0, 3.0, 1.0, 0.0}), slopes("-33 %", "33 %"));
   EXPECT_EQ(said_of({1.0, 1.0, 1.0, 1.0, 1.0}), slopes("0 %", "0 %"));
+  EXPECT_EQ(said_of({0.0, -1.0, -4.0, -5.0, -5.0}), slopes("0 %", "-25 %"));
 }
 
 }  // namespace stillhand::diagnosis::free_form_test

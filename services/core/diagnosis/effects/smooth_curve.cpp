@@ -164,8 +164,8 @@ std::string slopes_in_words(const Effect& effect) {
     if (std::abs(curve.slope(k)) > std::abs(steepest)) steepest = curve.slope(k);
   }
   const auto share = [&](std::size_t k) {
-    const double percent = steepest == 0.0 ? 0.0 : std::round(100.0 * curve.slope(k) / steepest);
-    return with_unit(percent, "%");
+    const long percent = steepest == 0.0 ? 0 : std::lround(100.0 * curve.slope(k) / steepest);
+    return with_unit(static_cast<double>(percent), "%");  // without the sign of a zero
   };
   return "its low end has " + share(0) + ", its high end " + share(curve.knots() - 1) +
          " of its steepest slope";
