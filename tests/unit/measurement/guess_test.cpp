@@ -114,6 +114,7 @@ TEST(SuggestionTest, TimesWithoutAUnitAreInTheUnitOfTheirSteps) {
     EXPECT_EQ(of({0.0, step, 2.0 * step, 3.0 * step}), unit) << step;
   }
   EXPECT_EQ(of({0.0, 1.0, 2.0, 4.0}), "ms") << "not each step is 1";
+  EXPECT_EQ(of({0.0, 2.0, 3.0, 4.0}), "ms");
   EXPECT_EQ(of({0.0, 0.0, 0.0, 0.0, 10.0, 20.0}), "ms") << "stamps that rows share have no step";
   EXPECT_EQ(of({3.0, 2.0, 1.0}), "s");
   EXPECT_EQ(of({0.0, 1e6, 2e6}, "s"), "s") << "as the file states";

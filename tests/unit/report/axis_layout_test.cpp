@@ -213,10 +213,35 @@ TEST(ExtentTest, BarsStandOnZeroAndTheirWidthCounts) {
   EXPECT_DOUBLE_EQ(extent_x(panel).high, 2.3);
 }
 
-TEST(ExtentTest, TheWhiskersOfABoxCount) {
-  const Panel panel{.series = {Series{.kind = Kind::kBox, .boxes = {{1, -3, 3, 4, 5, 12}}}}};
-  EXPECT_EQ(extent_y(panel).low, -3.0);
+TEST(ExtentTest, TheWhiskersAndTheWidthOfABoxCountWhereItIsVisible) {
+  Panel panel{.series = {Series{.kind = Kind::kBox,
+                                .boxes = {{1, -3, 3, 4, 5, 12}, {4, 0, 0, 0, 0, 99}},
+                                .bar_width = 2}},
+              .reference_lines = {{Direction::kHorizontal, -7.0}, {Direction::kVertical, 6.0}}};
+  EXPECT_EQ(extent_x(panel).low, 0.0);
+  EXPECT_EQ(extent_x(panel).high, 6.0);
+  EXPECT_EQ(extent_y(panel).high, 99.0);
+  panel.x.low = panel.x.high = 1.0;
+  EXPECT_EQ(extent_y(panel).low, -7.0);
   EXPECT_EQ(extent_y(panel).high, 12.0);
+}
+
+TEST(ExtentTest, MarksHaveRoomErrorBarsHaveEndsAndTheLargestValueIsStillOne) {
+  for (const Kind kind : {Kind::kLine, Kind::kDashedLine, Kind::kDottedLine, Kind::kPoints,
+                          Kind::kLineAndPoints, Kind::kErrorBars, Kind::kBars, Kind::kBox}) {
+    const Panel panel{.series = {Series{.kind = kind}, Series{}}};
+    EXPECT_EQ(extent_x(panel).marks, kind >= Kind::kPoints) << static_cast<int>(kind);
+    EXPECT_EQ(extent_y(panel).marks, kind >= Kind::kPoints) << static_cast<int>(kind);
+    EXPECT_EQ(extent_y(panel).from_zero, kind == Kind::kBars);
+  }
+  const Panel panel{.series = {Series{.x = {1, 2, 3, 4},
+                                      .y = {5, -kLargestValue, 1.1 * kLargestValue},
+                                      .y_low = {-2 * kLargestValue, 3, 3, 3, 3},
+                                      .y_high = {6, 7, 8, kLargestValue, -2 * kLargestValue}}}};
+  EXPECT_EQ(extent_x(panel).low, 1.0);
+  EXPECT_EQ(extent_x(panel).high, 4.0);
+  EXPECT_EQ(extent_y(panel).low, -kLargestValue);
+  EXPECT_EQ(extent_y(panel).high, kLargestValue);
 }
 
 }  // namespace stillhand::report::axis_layout_test
