@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "apps/experiment/export/bids_texts.hpp"
@@ -93,9 +94,63 @@ TEST(ExperimentFileTest, AQuestionKeepsTheBoundsOfTheScreen) {
     sut.steps = steps;
     EXPECT_EQ(support::refusal([&] { check(design); }) == "accepted", steps == 2) << steps;
   }
-  sut.steps = 2;
-  sut.text += 'm';
-  EXPECT_THROW(check(design), ConfigError);
+}
+
+// A design of one question and one line, after a change.
+bool passes(const std::function<void(Design&)>& change) {
+  Design design;
+  design.questions = {{"name", Question::After::kEnd, "text", "", "", 2}};
+  design.instructions = {"line"};
+  change(design);
+  return support::refusal([&] { check(design); }) == "accepted";
+}
+
+TEST(ExperimentFileTest, TextsKeepTheirBoundsOnBothSides) {
+  struct Bound {
+    std::function<std::string&(Design&)> text;
+    std::size_t least, most;
+  };
+  for (const auto& [text, least, most] :
+       {Bound{[](Design& d) -> std::string& { return d.questions[0].name; }, 1, 40},
+        Bound{[](Design& d) -> std::string& { return d.questions[0].text; }, 1, 100},
+        Bound{[](Design& d) -> std::string& { return d.questions[0].lowest; }, 0, 40},
+        Bound{[](Design& d) -> std::string& { return d.questions[0].highest; }, 0, 40},
+        Bound{[](Design& d) -> std::string& { return d.instructions[0]; }, 0, 100}}) {
+    for (const std::size_t size : {std::size_t{0}, std::size_t{1}, most, most + 1}) {
+      EXPECT_EQ(passes([&](Design& design) { text(design).assign(size, 'm'); }),
+                size >= least && size <= most)
+          << most << ": " << size;
+    }
+    EXPECT_FALSE(passes([&](Design& design) { text(design) = "a\x1F"; }));
+  }
+  for (const char* name : {"/", ":", "@", "[", "`", "{"}) {
+    EXPECT_FALSE(passes([&](Design& design) { design.questions[0].name = name; })) << name;
+  }
+  for (const std::size_t lines : {8u, 9u}) {
+    EXPECT_EQ(passes([&](Design& design) { design.instructions.assign(lines, " "); }), lines == 8u);
+  }
+}
+
+TEST(ExperimentFileTest, OnlyWhatASessionCanRunPassesByItsOwnName) {
+  EXPECT_THAT(live_conditions(), StartsWith("A, B, C, C' or C+; or A, B, C and mitigations: "
+                                            "low-pass, notch, "));
+  const std::pair<std::vector<std::string>, bool> lists[]{
+      {{"A", "B"}, true},      {{"A", "force"}, false}, {{"A", "P"}, false},
+      {{"A", "signal"}, true}, {{"A", "C'"}, true},     {{"C'", "signal"}, false}};
+  for (const auto& [conditions, good] : lists) {
+    EXPECT_EQ(passes([&](Design& design) {
+                design.conditions = conditions;
+                design.comparisons.clear();
+              }),
+              good)
+        << conditions[1];
+  }
+  for (const char* who : {"simulated", "mouse", "gamepad", "cat"}) {
+    EXPECT_EQ(passes([&](Design& design) { design.who = who; }), std::string(who) != "cat") << who;
+  }
+  EXPECT_FALSE(passes([](Design& design) { design.control_model = kDiagnosed; })) << "without C+";
+  EXPECT_FALSE(passes([](Design& design) { design.questions.push_back(design.questions[0]); }))
+      << "one name twice";
 }
 
 TEST(ExperimentFileTest, ACodeIsACodeAndNeverAName) {

@@ -8,6 +8,7 @@
 
 #include <fstream>
 
+#include "apps/libraries/experiment/core/seeds.hpp"
 #include "apps/libraries/experiment/file/journal.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
@@ -236,6 +237,71 @@ TEST_F(ProgressTest, ParticipantsDifferInSeedsUnlessTheyShareThem) {
     EXPECT_EQ(shared[i].motion_seed, also[i].motion_seed);
     EXPECT_EQ(shared[i].target_seed, also[i].target_seed);
   }
+}
+
+// Eq. EX-4; participants and places count from 1, what all share is of participant 0.
+TEST_F(ProgressTest, EverySeedIsOfItsUseItsParticipantAndItsPlace) {
+  design_.motion_seed = 11;
+  design_.target_seed = 12;
+  design_.subject_seed = 13;
+  for (const std::uint64_t participant : {0u, 4u}) {
+    design_.same_target_for_all = participant == 4;
+    const std::uint64_t who = participant + 1, whose_target = participant == 4 ? 0 : who;
+    std::uint64_t place = 0;
+    for (const Step& step : plan_of(design_, assignment_, participant)) {
+      if (step.kind != StepKind::kTrial) continue;
+      ++place;
+      EXPECT_EQ(step.place, static_cast<std::int64_t>(place));
+      EXPECT_EQ(step.block, place <= 3 ? 1 : 2);
+      EXPECT_EQ(step.motion_seed, derived_seed(11, SeedUse::kMotion, who, place));
+      EXPECT_EQ(step.target_seed, derived_seed(12, SeedUse::kTarget, whose_target, place));
+      const Step alone = trial_at_place(design_, participant, step.place);
+      EXPECT_EQ(alone.motion_seed, step.motion_seed);
+      EXPECT_EQ(alone.target_seed, step.target_seed);
+    }
+    EXPECT_EQ(place, 6u);
+    // A practice trial is behind every place.
+    EXPECT_EQ(practice_trial(design_, participant, 2).motion_seed,
+              derived_seed(11, SeedUse::kMotion, who, 100'002));
+    EXPECT_EQ(session_seed(design_, participant, 3), derived_seed(13, SeedUse::kSession, who, 3));
+    EXPECT_EQ(identification_seed(design_, participant, 3),
+              derived_seed(11, SeedUse::kIdentification, who, 3));
+  }
+}
+
+// Two blocks of two passes are four rows of the square, from the participant's own on.
+TEST_F(ProgressTest, EachPassOfABlockIsTheNextRowOfTheSquare) {
+  design_.order = Order::kLatin;
+  design_.conditions = {"A", "B", "C", "damping"};
+  design_.trials = 2;
+  design_.practice.most_trials = 0;
+  std::vector<std::size_t> sut, rows;
+  for (const Step& step : plan_of(design_, assignment_, 1)) {
+    EXPECT_GE(step.block, 1);
+    EXPECT_LE(step.block, step.kind == StepKind::kBreak ? 1 : 2) << "no break behind the last";
+    if (step.kind == StepKind::kTrial) sut.push_back(step.condition);
+  }
+  for (std::size_t pass = 0; pass < 4; ++pass) {
+    const auto row = condition_order(Order::kLatin, 4, assignment_.order_seed, 1, pass);
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
+  EXPECT_EQ(sut, rows);
+}
+
+TEST_F(ProgressTest, TrialsInARowAreWithoutOneBelowTheCriterionBetween) {
+  design_.practice.in_a_row = 2;
+  design_.practice.most_trials = 5;
+  const auto reached = [&](const std::vector<double>& ratios) {
+    std::vector<Entry> entries;
+    for (const double ratio : ratios) {
+      entries.push_back(
+          {.kind = EntryKind::kTrialEnded, .step = 0, .completed = true, .dwell_ratio = ratio});
+    }
+    return progress(entries).practised();
+  };
+  EXPECT_FALSE(reached({0.4}));
+  EXPECT_TRUE(reached({0.4, 0.4, 0.3}));
+  EXPECT_FALSE(reached({0.4, 0.3, 0.4}));
 }
 
 }  // namespace
