@@ -214,10 +214,11 @@ TEST(ExtentTest, BarsStandOnZeroAndTheirWidthCounts) {
 }
 
 TEST(ExtentTest, TheWhiskersAndTheWidthOfABoxCountWhereItIsVisible) {
-  Panel panel{.series = {Series{.kind = Kind::kBox,
-                                .boxes = {{1, -3, 3, 4, 5, 12}, {4, 0, 0, 0, 0, 99}},
-                                .bar_width = 2}},
-              .reference_lines = {{Direction::kHorizontal, -7.0}, {Direction::kVertical, 6.0}}};
+  const std::vector<Box> boxes{{1, -3, 3, 4, 5, 12}, {4, 0, 0, 0, 0, 99}};
+  Panel panel{.series = {Series{.kind = Kind::kBox, .boxes = boxes, .bar_width = 2}}};
+  EXPECT_EQ(extent_x(panel).low, 0.0);
+  EXPECT_EQ(extent_x(panel).high, 5.0);
+  panel.reference_lines = {{Direction::kHorizontal, -7.0}, {Direction::kVertical, 6.0}};
   EXPECT_EQ(extent_x(panel).low, 0.0);
   EXPECT_EQ(extent_x(panel).high, 6.0);
   EXPECT_EQ(extent_y(panel).high, 99.0);

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/admittance/arm_fit.hpp"
@@ -87,6 +89,28 @@ TEST(ConditionsTest, OnlyTheCancellersArePlannedAsC) {
     EXPECT_EQ(planned_as(each), is_c ? Condition::kC : each) << name_of(each);
   }
   EXPECT_FALSE(cancels(Condition::kP));
+}
+
+// apps/study/RESULTS.md, "Chosen"; a schedule has the person's own arms.
+TEST(ConditionsTest, AMitigationHasTheNumbersThatTheStudyChose) {
+  using Values = std::vector<double>;
+  const std::pair<Condition, Values> chosen[]{{Condition::kLowPass, {0.7, 0.7}},
+                                              {Condition::kNotch, {1.2, 1.0}},
+                                              {Condition::kLmsSignal, {0.01}},
+                                              {Condition::kDamping, {0.0, 90.0, 0.0}},
+                                              {Condition::kImpedance, {200.0, 60.0, 0.0}}};
+  for (const auto& [condition, values] : chosen) {
+    EXPECT_EQ(row_of(condition).parts.at(0).values, values) << name_of(condition);
+  }
+  EXPECT_EQ(row_of(Condition::kLmsForce).parts.at(0).values.at(0), 0.01);
+  EXPECT_EQ(row_of(Condition::kDampingForce).parts.at(1), row_of(Condition::kDamping).parts.at(0));
+  ProtocolOptions options;
+  options.arms = {1.0, 2.0};
+  EXPECT_EQ(tracking_trial(options, Condition::kScheduled, 1).parts.at(0).values, options.arms);
+  for (std::size_t i = 0; i < condition_table().size(); ++i) {
+    const std::string name = condition_table()[i].name;
+    EXPECT_EQ(condition_table()[i].arm_rest, name == "F" || name == "arm-rest+force") << name;
+  }
 }
 
 // The canceller's process makes each of them of what a session identifies.

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -105,6 +106,47 @@ TEST(ForceBudgetTest, ANoisyAccelerometerIsTheSensors) {
   const ForceBudget sut = budget_of(noisy, faults);
   EXPECT_GT(known_n, 0.05);
   EXPECT_NEAR(sut.sensor.force_n, known_n, 0.05 * known_n);
+}
+
+// Eq. SN-8 of f' = 7, f_m = -4, f_o = -5, f_u = -8, f_t = -10 N: 3 N are left.
+TEST(ForceBudgetTest, ATickIsSplitIntoItsParts) {
+  ForceSums sut = sums_of({7.0, -4.0, {-5.0, -8.0, -10.0}});
+  EXPECT_EQ(sut.lateness, 3.0 * 1.0);
+  EXPECT_EQ(sut.limits, 3.0 * 3.0);
+  EXPECT_EQ(sut.sensor, 3.0 * 2.0);
+  EXPECT_EQ(sut.rest, 3.0 * -3.0);
+  EXPECT_EQ(sut.left, sut.lateness + sut.limits + sut.sensor + sut.rest);
+  for (int i = 0; i < 2; ++i) sut += sut;
+  EXPECT_EQ(sut.ticks, 4.0);
+  EXPECT_EQ(sut.force_n(sut.left), 3.0);
+  EXPECT_EQ(sut.force_n(sut.lateness), 1.0);
+  EXPECT_EQ(sut.force_n(sut.limits), 3.0);
+  EXPECT_EQ(sut.force_n(sut.sensor), 2.0);
+  EXPECT_EQ(sut.force_n(sut.rest), -3.0);
+  EXPECT_EQ(ForceSums{}.force_n(1.0), 0.0);
+}
+
+TEST(ForceBudgetTest, TwelveSecondsOfKnownForcesAndMotionHaveABudget) {
+  const auto has = [](std::size_t ticks, const std::function<void(BudgetSignals&)>& change) {
+    BudgetSignals signals{std::vector<TickForces>(ticks, {1.0, 0.0, {}}),
+                          {std::vector<double>(ticks)}};
+    for (std::size_t n = 0; n < ticks; ++n)
+      signals.motion[0][n] = std::sin(0.01 * static_cast<double>(n * n % 997));
+    change(signals);
+    return force_budget(signals).has_value();
+  };
+  EXPECT_TRUE(has(12'000, [](auto&) {}));
+  EXPECT_FALSE(has(11'999, [](auto&) {}));
+  EXPECT_FALSE(has(12'000, [](auto& signals) { signals.motion[0].pop_back(); }));
+  EXPECT_FALSE(has(12'000, [](auto& signals) { signals.motion[0][11'999] = INFINITY; }));
+  for (double& (*force)(TickForces&) :
+       {+[](TickForces& f) -> double& { return f.feedthrough_n; },
+        +[](TickForces& f) -> double& { return f.motor_n; },
+        +[](TickForces& f) -> double& { return f.asked.on_time_n; },
+        +[](TickForces& f) -> double& { return f.asked.unlimited_n; },
+        +[](TickForces& f) -> double& { return f.asked.noiseless_n; }}) {
+    EXPECT_FALSE(has(12'000, [&](auto& signals) { force(signals.forces[11'999]) = NAN; }));
+  }
 }
 
 TEST(ForceBudgetTest, AnUnknownFeedthroughOrModelHasNoneAndWrongSettingsAreFoundOut) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <random>
 #include <set>
 
 #include "services/core/contract/config_error.hpp"
@@ -47,6 +48,8 @@ TEST(ProtocolTest, APlannedRunIsThePeggedTrialAloneInTheMotionOfARide) {
   // The peak stays that of the pegged trial, the band that of a ride.
   EXPECT_DOUBLE_EQ(sut.peak_m_s2, 0.75 * 9.80665);
   EXPECT_DOUBLE_EQ(sut.band_high_hz, 6.0);
+  EXPECT_EQ(sut.band_low_hz, 0.05);
+  EXPECT_EQ(sut.band_order, 0);
 }
 
 TEST(ProtocolTest, EveryOrderOccursAmongSeeds) {
@@ -167,7 +170,9 @@ TEST(ProtocolTest, TheMotionIsThePapers) {
   EXPECT_EQ(trials[0].band_low_hz, 0.7);
   EXPECT_EQ(trials[0].band_high_hz, 4.0);
   EXPECT_NEAR(trials[0].peak_m_s2, 7.355, 5e-4);
-  EXPECT_LT(trials[0].rms_m_s2, trials[0].peak_m_s2);
+  EXPECT_DOUBLE_EQ(trials[0].rms_m_s2, 0.75 * 9.80665 / 3.8);
+  EXPECT_EQ(motion_profile(trials[0]).band_order, 4);
+  EXPECT_EQ(motion_profile(trials[0]).band_low_hz, 0.7);
   const PlannedTrial& moving = moving_trial(trials);
   EXPECT_EQ(moving.band_low_hz, 0.7);
   EXPECT_EQ(moving.band_high_hz, 2.0);
@@ -180,6 +185,37 @@ TEST(ProtocolTest, TheHigherHalfOfASeedCounts) {
   const auto high = plan(three_conditions(1 + (std::uint64_t{1} << 32)));
   EXPECT_NE(low[0].motion_seed, high[0].motion_seed);
   EXPECT_NE(low[1].reference_seed, high[1].reference_seed);
+}
+
+// The first word of a seed_seq of the halves of the seed, the use and the trial's number: a session
+// of that seed is repeated by it.
+TEST(ProtocolTest, EveryUseOfTheSeedHasAStreamOfItsOwn) {
+  const std::uint64_t seed = (std::uint64_t{3} << 32) + 5;
+  const auto derived = [](std::uint32_t use, std::uint32_t number) {
+    std::seed_seq mix{5u, 3u, use, number};
+    std::uint32_t word = 0;
+    mix.generate(&word, &word + 1);
+    return word;
+  };
+  const auto trials = plan(three_conditions(seed));
+  EXPECT_EQ(trials[0].motion_seed, derived(3, 0));
+  EXPECT_EQ(trials[2].motion_seed, derived(3, 2));
+  EXPECT_EQ(trials[2].reference_seed, derived(2, 2));
+  EXPECT_EQ(repeat_seed(seed, 7), derived(4, 7));
+  const PlannedTrial again = identification_again(three_conditions(seed), 9);
+  EXPECT_EQ(again.motion_seed, derived(3, 9));
+  EXPECT_EQ(again.trial.number, 9);
+}
+
+TEST(ProtocolTest, AMitigationIsKnownByItsAliasBehindAllAndRefusedTwice) {
+  EXPECT_THAT(known_conditions(kMitigations), testing::StartsWith("all, none, force, arm-rest, "));
+  EXPECT_THAT(known_conditions(kStudyConditions),
+              testing::StartsWith("A (stationary), B (moving)"));
+  const auto refusal = [](const char* text) {
+    return support::refusal([&] { parse_conditions(text, kMitigations); });
+  };
+  EXPECT_THAT(refusal("C,force"), testing::HasSubstr("none is B, and force is C"));
+  EXPECT_THAT(refusal("force,C"), testing::EndsWith("each condition once"));
 }
 
 TEST(ProtocolTest, TrialsAreNumberedInTheirOrder) {
