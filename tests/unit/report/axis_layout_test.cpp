@@ -235,6 +235,9 @@ TEST(ExtentTest, MarksHaveRoomErrorBarsHaveEndsAndTheLargestValueIsStillOne) {
     EXPECT_EQ(extent_y(panel).marks, kind >= Kind::kPoints) << static_cast<int>(kind);
     EXPECT_EQ(extent_y(panel).from_zero, kind == Kind::kBars);
   }
+  const Panel longer{.series = {Series{.x = {1}, .y = {2, 9}, .y_low = {1, -9}}}};
+  EXPECT_EQ(extent_y(longer).low, 1.0) << "a value without a place";
+  EXPECT_EQ(extent_y(longer).high, 2.0);
   const Panel panel{.series = {Series{.x = {1, 2, 3, 4},
                                       .y = {5, -kLargestValue, 1.1 * kLargestValue},
                                       .y_low = {-2 * kLargestValue, 3, 3, 3, 3},
