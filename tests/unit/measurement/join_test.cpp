@@ -55,6 +55,23 @@ TEST(JoinTest, EveryRecordingIsAStretchAndTimeGoesOn) {
   EXPECT_THAT(sut.notes, ElementsAre("a.csv: 1 row missing.", "b.csv: 1 row missing."));
 }
 
+// Each of 0.2 s; a part that was joined before keeps its recordings apart.
+TEST(JoinTest, FaultsGoOnInTimeAndRecordingsAreCounted) {
+  Measurement second = part("b.csv", 100.0, 10.0);
+  second.stretches = {{0, 1, 100.0, 0}, {1, 2, 100.1, 1}};
+  second.screening = {{"f", "spikes", {100.0, 100.1}, 1.0, "", false}};
+  const Measurement sut = join({part("a.csv", 5.0, 1.0), second, part("c.csv", -7.0, 3.0)});
+  ASSERT_EQ(sut.stretches.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(sut.stretches[i].recording, i);
+  EXPECT_DOUBLE_EQ(sut.stretches[3].start_s, 5.4);
+  EXPECT_EQ(sut.stretches[3].first, 4u);
+  EXPECT_EQ(sut.stretches[3].end, 6u);
+  EXPECT_THAT(sut.screening.at(0).times_s,
+              ElementsAre(testing::DoubleEq(5.2), testing::DoubleEq(5.3)));
+  EXPECT_THAT(sut.notes, ElementsAre("a.csv: 1 row missing.", "b.csv: 1 row missing.",
+                                     "c.csv: 1 row missing."));
+}
+
 TEST(JoinTest, ColumnsInAnotherOrderFindTheirChannel) {
   Measurement second = part("b.csv", 0.0, 10.0);
   std::swap(second.channels[0], second.channels[1]);
@@ -66,6 +83,10 @@ TEST(JoinTest, AThousandthOfTheRateIsTheSameRate) {
   Measurement second = part("b.csv", 0.0, 10.0);
   second.rate_hz = 10.009;
   EXPECT_EQ(error_of(part("a.csv", 0.0, 1.0), second), "accepted");
+  for (const double rate_hz : {9.98, 9.989, 10.011}) {
+    second.rate_hz = rate_hz;
+    EXPECT_NE(error_of(part("a.csv", 0.0, 1.0), second), "accepted") << rate_hz;
+  }
   second.rate_hz = 10.02;
   EXPECT_THAT(error_of(part("a.csv", 0.0, 1.0), second),
               HasSubstr("b.csv: got 10.020000 Hz, want 10.000000 Hz as a.csv has"));

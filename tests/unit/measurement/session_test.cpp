@@ -9,8 +9,10 @@
 #include <limits>
 
 #include "apps/libraries/measurement/read.hpp"
+#include "apps/libraries/measurement/session_trials.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/flag.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "tests/support/recorded_file.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/session_file.hpp"
@@ -310,6 +312,35 @@ TEST(SessionTest, TicksAndLengthsThatNoSessionHasAreNotBelieved) {
   file.sensed(-5);
   run_ticks(file, 0, 100, false);
   EXPECT_EQ(read_measurement(file_of(file.close())).size(), 100u);
+}
+
+// A hundred days; no ramp is shorter than none.
+TEST(SessionTest, ATrialKeepsItsBoundsOnBothSides) {
+  constexpr std::int64_t kMost = 8'640'000'000;
+  const auto is_trial = [](std::int64_t start, std::int64_t duration, std::int64_t ramp) {
+    SessionFile file;
+    stillhand_msgs::TrialControl control;
+    control.session(stillhand_msgs::SESSION_RUNNING);
+    control.trial(0);
+    control.phase(PHASE_TRACKING);
+    control.start_tick(start);
+    control.duration_ticks(duration);
+    control.ramp_ticks(ramp);
+    file.add(topics::kTrialControl, control);
+    file.sensed(start);
+    file.sensed(start + 1);
+    const std::string path = file_of(file.close());
+    recording::FileSource source(path);
+    recording::McapReader reader(source);
+    return find_trials(reader, path).trials.at(0).trial.number == 0;
+  };
+  for (const std::int64_t most : {kMost, kMost + 1}) {
+    EXPECT_EQ(is_trial(0, most, 0), most == kMost);
+    EXPECT_EQ(is_trial(0, 1, most), most == kMost);
+  }
+  EXPECT_TRUE(is_trial(kMost, 1, 0));
+  EXPECT_FALSE(is_trial(0, 1, -1));
+  EXPECT_FALSE(is_trial(0, 0, 0));
 }
 
 }  // namespace stillhand::measurement::session_test
