@@ -62,7 +62,8 @@ TEST_F(OpenTableTest, ACaptureIsKnownByItsTwoBytesAndItsName) {
 
 TEST_F(OpenTableTest, AnArchiveOfArraysIsToldFromAnotherAndTheLineNamesTheFile) {
   const std::string arrays = file("a.npz", "PK\x03\x04 x.npy"), other = file("b.zip", "PK\x03\x04");
-  EXPECT_THAT(support::refusal([&] { kind_of(arrays); }), HasSubstr("numpy.load('" + arrays));
+  EXPECT_THAT(support::refusal([&] { kind_of(arrays); }),
+              HasSubstr("numpy.load('" + arrays + "')"));
   EXPECT_THAT(support::refusal([&] { kind_of(other); }), HasSubstr("--convert-to csv " + other));
   EXPECT_THAT(support::refusal([&] { kind_of(file("c", ".npy, but no archive")); }), "accepted");
 }
