@@ -81,6 +81,7 @@ class ProgressTest : public testing::Test {
 TEST_F(ProgressTest, ThePlanHasTheStepsInTheirOrder) {
   EXPECT_EQ(trials_of(plan_), 6);
   EXPECT_EQ(plan_.front().kind, StepKind::kPractice);
+  EXPECT_EQ(plan_.front().block, 0);
   EXPECT_EQ(plan_.back().kind, StepKind::kQuestion);
   // practice, its question, two blocks of three trials with a question each and one of the block,
   // a break, the last question
@@ -272,7 +273,6 @@ TEST_F(ProgressTest, EverySeedIsOfItsUseItsParticipantAndItsPlace) {
 // Two blocks of two passes are four rows of the square, from the participant's own on.
 TEST_F(ProgressTest, EachPassOfABlockIsTheNextRowOfTheSquare) {
   design_.order = Order::kLatin;
-  design_.conditions = {"A", "B", "C", "damping"};
   design_.trials = 2;
   design_.practice.most_trials = 0;
   std::vector<std::size_t> sut, rows;
@@ -282,7 +282,7 @@ TEST_F(ProgressTest, EachPassOfABlockIsTheNextRowOfTheSquare) {
     if (step.kind == StepKind::kTrial) sut.push_back(step.condition);
   }
   for (std::size_t pass = 0; pass < 4; ++pass) {
-    const auto row = condition_order(Order::kLatin, 4, assignment_.order_seed, 1, pass);
+    const auto row = condition_order(Order::kLatin, 3, assignment_.order_seed, 1, pass);
     rows.insert(rows.end(), row.begin(), row.end());
   }
   EXPECT_EQ(sut, rows);
