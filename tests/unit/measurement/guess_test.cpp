@@ -57,7 +57,8 @@ TEST(GuessTest, ATitleIsTakenForWhatItsWordsBeginWith) {
                            {"axle", "", ""},
                            {"ax", "", "a_x [m/s^2]"},
                            {"impact", "", ""},
-                           // The last axis that ends a word; else the lateral one.
+                           // The last axis that stands alone or ends a word; else the lateral one.
+                           {"acc_z_max", "", "a_z [m/s^2]"},
                            {"acc", "", "a_y [m/s^2]"},
                            {"accx", "", "a_x [m/s^2]"},
                            {"acc_z", "", "a_z [m/s^2]"},

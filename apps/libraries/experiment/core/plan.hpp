@@ -14,7 +14,7 @@ struct Assignment {
   std::uint64_t order_seed = 0;
 };
 
-/// A participant's labels of n conditions, at most 13, in the order of Design::conditions: X, Y, Z,
+/// A participant's labels of n conditions, at most 17, in the order of Design::conditions: X, Y, Z,
 /// W, ... shuffled for each participant, so that who recognises a trial knows nothing of others'.
 std::vector<std::string> labels_of(std::size_t conditions, const Assignment& assignment,
                                    std::size_t participant);

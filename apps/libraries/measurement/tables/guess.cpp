@@ -70,12 +70,15 @@ std::size_t find_word(const std::string& title, std::string_view word) {
   return std::string::npos;
 }
 
-// The axis in the rest of a title: its last x, y or z that stands alone or ends a word; y, the
+// The axis in the rest of a title: its last x, y or z that stands alone, else ends a word; y, the
 // lateral one, where it states none.
 char axis_in(const std::string& rest) {
-  for (std::size_t i = rest.size(); i-- > 0;) {
-    const bool ends = i + 1 == rest.size() || !is_small_letter(rest[i + 1]);
-    if (ends && rest[i] >= 'x' && rest[i] <= 'z') return rest[i];
+  for (const bool alone : {true, false}) {
+    for (std::size_t i = rest.size(); i-- > 0;) {
+      const bool begins = i == 0 || !is_small_letter(rest[i - 1]);
+      const bool ends = i + 1 == rest.size() || !is_small_letter(rest[i + 1]);
+      if (ends && (begins || !alone) && rest[i] >= 'x' && rest[i] <= 'z') return rest[i];
+    }
   }
   return 'y';
 }

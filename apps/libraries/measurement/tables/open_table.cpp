@@ -14,6 +14,7 @@
 #include "apps/libraries/measurement/tables/text_encoding.hpp"
 #include "apps/libraries/measurement/tables/text_table.hpp"
 #include "apps/libraries/measurement/tables/xdf_table.hpp"
+#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
 
@@ -94,8 +95,7 @@ constexpr ForeignKind kNpz{
 
 [[noreturn]] void refuse_kind(const std::string& path, const ForeignKind& foreign) {
   std::string convert(foreign.convert);
-  if (const std::size_t at = convert.find("FILE"); at != std::string::npos)
-    convert.replace(at, 4, path);
+  report::replace_all(convert, "FILE", path);
   throw ConfigError(path, std::string(foreign.kind), convert);
 }
 
@@ -121,7 +121,7 @@ bool is_any_of(std::string_view begin, std::initializer_list<std::string_view> m
 std::string read_text(const std::string& path) {
   const std::uint64_t bytes = recording::FileSource(path).size();
   if (bytes > kMostText_bytes) {
-    throw ConfigError(path, std::to_string(bytes >> 20) + " MiB",
+    throw ConfigError(path, std::to_string(((bytes - 1) >> 20) + 1) + " MiB",
                       "at most " + std::to_string(kMostText_bytes >> 20) +
                           " MiB; use a part of the file, fewer columns or a lower rate");
   }
