@@ -222,10 +222,6 @@ std::optional<std::vector<cancellation::Channel>> Conversion::received(const Eff
 }
 
 void Conversion::carry(const Effect& effect, const control::Spring& law) {
-  if (out_.model.loop) {
-    treat(effect, false, "the canceller runs one spring inside the body, and this is a second");
-    return;
-  }
   const diagnosis::LoopPath path = diagnosis::loop_path(effect, model_.body.order());
   const bool of_force = path.of_output() && model_.inputs.size() > 1;
   diagnosis::ModelRun run;

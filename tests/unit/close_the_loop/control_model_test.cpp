@@ -236,16 +236,6 @@ TEST(ControlModelTest, ASpringThatCantBeCarriedLeavesABodyFittedWithoutIt) {
   EXPECT_LT(difference(model, control.model, motion), 0.8 * difference(model, as_it_was, motion));
 }
 
-TEST(ControlModelTest, OfTwoSpringsOneIsLeftAlone) {
-  const Motion motion;
-  diagnosis::Model model = two_modes();
-  model.effects = {play_inside()};
-  const std::vector<double> force = diagnosis::free_run(model, motion.signals()).prediction;
-  model.effects.push_back(play_inside());
-  const ConvertedModel control = to_control_model(model, motion.signals(force));
-  EXPECT_EQ(std::ranges::count(control.treatments, true, &Treatment::cancelled), 1);
-}
-
 TEST(ControlModelTest, AModelOfAnotherChannelIsRefused) {
   const Motion motion;
   diagnosis::Model model = two_modes();
