@@ -96,13 +96,7 @@ TEST(LoopTest, AStretchMayBeginAtTheStop) {
 // Springs within their straight part: at rest z = N u / (A - M), and y = (B u + w + E z) / (A - the
 // springs' own stiffnesses).  A(1) = 0.2, B(1) = 0.12 and 0.2; -2/50, 1.2/40; N = 0.02, M = 0.04, E
 // = 0.1.
-TEST(LoopTest, SpringsRestWhereTheirForcesAgreeInEveryStretch) {
-  Model model = made::model_of(
-      {{{0.0, 0.1, 0.02}, {0.3, -0.1, 0.0}}, {1.0, -1.2, 0.4}},
-      {{"dead_zone", "play inside the body", {}, {}, {0.1, 0.3, 0.0, 0.02, 0.1, 0.0, 0.04, 0.2}},
-       {"dead_zone", "play of the output", {}, {constant("threshold", "N", 50.0)}, {-2.0, 0.7}},
-       {"dead_zone", "play of the output", {}, {constant("threshold", "N", 40.0)}, {1.2, 0.0}}});
-  model.inputs = {"u", "w"};
+TEST(LoopTest, ASpringRestsWhereTheForcesAgreeInEveryStretch) {
   std::vector<double> u(kCount, 3.0);
   std::vector<double> w(kCount, 1.0);
   std::fill(u.begin() + 1000, u.end(), -1.0);
@@ -110,14 +104,25 @@ TEST(LoopTest, SpringsRestWhereTheirForcesAgreeInEveryStretch) {
   const Measurement measurement = made::cut_in_two(
       made::measurement_of({{"u", "V", u}, {"w", "V", w}, {"y", "N", made::white(kCount, 2)}}),
       1000, 5.0);
-  const FreeRun sut = free_run(model, Signals(measurement, {"u", "w"}, "y"));
-  ASSERT_TRUE(sut.finite);
+  const auto run_of = [&](const Effect& spring) {
+    Model model =
+        made::model_of({{{0.0, 0.1, 0.02}, {0.3, -0.1, 0.0}}, {1.0, -1.2, 0.4}}, {spring});
+    model.inputs = {"u", "w"};
+    return free_run(model, Signals(measurement, {"u", "w"}, "y"));
+  };
+  const FreeRun inside = run_of(
+      {"dead_zone", "play inside the body", {}, {}, {0.1, 0.3, 0.0, 0.02, 0.1, 0.0, 0.04, 0.2}});
+  const FreeRun of_output = run_of(
+      {"dead_zone", "play of the output", {}, {constant("threshold", "N", 50.0)}, {-2.0, 0.7}});
   for (std::size_t n = 0; n < kCount; ++n) {
     const double z = 0.02 * u[n] / (0.2 - 0.04);
-    const double y = (0.12 * u[n] + 0.2 * w[n] + 0.1 * z) / (0.2 + 2.0 / 50.0 - 1.2 / 40.0);
-    ASSERT_NEAR(sut.body[n], y, 1e-9) << n;
-    ASSERT_NEAR(sut.argument[n], z, 1e-9) << n << ": of the first";
-    ASSERT_NEAR(sut.phi[n], z, 1e-9) << n;
+    ASSERT_NEAR(inside.body[n], (0.12 * u[n] + 0.2 * w[n] + 0.1 * z) / 0.2, 1e-9) << n;
+    ASSERT_NEAR(inside.argument[n], z, 1e-9) << n;
+    ASSERT_NEAR(inside.phi[n], z, 1e-9) << n;
+    const double y = (0.12 * u[n] + 0.2 * w[n]) / (0.2 + 2.0 / 50.0);
+    ASSERT_NEAR(of_output.body[n], y, 1e-9) << n;
+    ASSERT_NEAR(of_output.argument[n], y, 1e-9) << n;
+    ASSERT_NEAR(of_output.phi[n], y / 50.0, 1e-9) << n;
   }
 }
 
