@@ -179,14 +179,14 @@ TEST(ForceTimingTest, ChannelsEndAtTheirFullScaleAndAYAtItsBound) {
     EXPECT_TRUE(most.sound);
     const auto more = sut.step(n++, {0.0, sign * 60.001, 0.0, 0.0, 0.0, 0.0}, kGood, false);
     EXPECT_EQ(more.flags, Flags{kInputInvalid});
-    const ChannelSample beside{sign * 20.0, 0.0, 0.0, 0.0, sign * 7.0, 0.0};
-    EXPECT_DOUBLE_EQ(sut.step(n++, beside, kGood, false).predicted_n, sign * (1.667 + 6.0));
+    const ChannelSample others{sign * 20.0, 0.0, 0.0, 0.0, sign * 7.0, 0.0};
+    EXPECT_DOUBLE_EQ(sut.step(n++, others, kGood, false).predicted_n, sign * (1.667 + 6.0));
   }
 }
 
 // Eq. CC-10 and CC-6: the weights are those of an AdaptiveGain that has seen the same, moved only
 // in full effect, and a path from the stick is not scaled.
-TEST(ForceTimingTest, GainAndPhaseAreFollowedInFullEffectAndBesideThemNothing) {
+TEST(ForceTimingTest, GainAndPhaseAreFollowedInFullEffectAndNothingElse) {
   ControlModel model = control_model(gain(2.0));
   model.paths = {{Channel::kTheta, 0.0, {}, 3.0}};
   model.adapts = kAverageHand;

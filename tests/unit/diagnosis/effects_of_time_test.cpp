@@ -169,7 +169,6 @@ TEST(EffectsOfTimeTest, ABurstIsWhatItsWindowsSay) {
   }
 }
 
-// Noise whose power changes by a factor of nine, and noise with heavy tails: no burst.
 // Stretches of a window each, five rows at 1 Hz, are judged from twenty on.  The two largest of a
 // window's samples do not count, and the first, in which a stretch begins, is 0.
 TEST(EffectsOfTimeTest, AWindowHasFiveSamplesAndStandsOutFromNineteenOthers) {
@@ -198,6 +197,7 @@ TEST(EffectsOfTimeTest, AWindowHasFiveSamplesAndStandsOutFromNineteenOthers) {
   EXPECT_EQ(count_of(24, 4, 3), 0u) << "no stretch holds a window";
 }
 
+// Noise whose power changes by a factor of nine, and noise with heavy tails: no burst.
 TEST(EffectsOfTimeTest, NoiseIsNoBurst) {
   for (std::uint64_t seed = 80; seed < 86; ++seed) {
     std::vector<double> noise = made::white(kCount, seed);

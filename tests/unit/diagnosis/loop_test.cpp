@@ -93,9 +93,9 @@ TEST(LoopTest, AStretchMayBeginAtTheStop) {
   for (std::size_t n = 0; n < kCount; ++n) ASSERT_NEAR(run.prediction[n], 1.5, 1e-9) << n;
 }
 
-// Springs within their straight part: at rest z = N u / (A - M), and y = (B u + w + E z) / (A - the
-// springs' own stiffnesses).  A(1) = 0.2, B(1) = 0.12 and 0.2; -2/50, 1.2/40; N = 0.02, M = 0.04, E
-// = 0.1.
+// A spring within its straight part.  Inside, at rest: z = N u / (A - M), y = (B u + E z) / A.  Of
+// the output: y = B u / (A + its own stiffness, 2/50).  A(1) = 0.2, B(1) = 0.12 and 0.2, N = 0.02,
+// M = 0.04, E = 0.1.
 TEST(LoopTest, ASpringRestsWhereTheForcesAgreeInEveryStretch) {
   std::vector<double> u(kCount, 3.0);
   std::vector<double> w(kCount, 1.0);
