@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,6 +9,9 @@
 #include <utility>
 
 namespace stillhand::report {
+
+/// Length in bytes of the first character of a text that has one, 0 if it is no UTF-8 (RFC 3629).
+std::size_t character_length(std::string_view text);
 
 /// Text on one line that every XML reader accepts: control characters become spaces, and bytes that
 /// are no UTF-8 or no XML character become U+FFFD.
