@@ -50,11 +50,9 @@ SWITCH = r"""#pragma once
 #include <cstdlib>
 #include <type_traits>
 namespace changed {
-inline int chosen() {
-  static const int number = std::getenv("STILLHAND_CHANGE") ? std::atoi(std::getenv("STILLHAND_CHANGE")) : -1;
-  return number;
-}
-template <int N> bool is_on() { return chosen() == N; }
+// 0 until it is set, which is no change's number.
+inline const int chosen = std::getenv("STILLHAND_CHANGE") ? std::atoi(std::getenv("STILLHAND_CHANGE")) : 0;
+template <int N> bool is_on() { return chosen == N; }
 template <int N> bool truth(bool own) { return own != is_on<N>(); }
 template <int N, class T> T number(T own) {
   return !is_on<N>() ? own : own == T(0) ? T(1) : own == T(1) ? T(0) : T(2 * own);
@@ -154,17 +152,17 @@ def refused(changes):
 
 def built(wanted, seed):
     """Changes by number that are built in, at least as many as wanted."""
-    candidates, count = drawn(2 * wanted, seed)
+    candidates, count = drawn(wanted + wanted // 2, seed)
     originals = {change.file: (SOURCE / change.file).read_text(encoding="utf-8") for change in candidates}
     (BUILD / "changed.hpp").write_text(SWITCH, encoding="utf-8")
-    changes = dict(enumerate(candidates))
+    changes = dict(enumerate(candidates, 1))
     try:
         while True:
             write_switched(changes, originals)
             bad = refused(changes)
             if not bad:
                 if len(changes) < wanted:
-                    raise SystemExit(f"mutations: only {len(changes)} of {2 * wanted} can be switched")
+                    raise SystemExit(f"mutations: only {len(changes)} of {len(candidates)} can be switched")
                 return changes, count
             changes = {number: change for number, change in changes.items() if number not in bad}
             print(f"{len(bad)} cannot be switched, {len(changes)} are left", file=sys.stderr, flush=True)
