@@ -23,10 +23,6 @@ ModelRun run_of(const Model& model, const diagnosis::Signals& signals) {
   return result;
 }
 
-bool in_loop(const Effect& effect) {
-  return diagnosis::effect_kind(effect.kind).stage(effect) == Stage::kFeedback;
-}
-
 }  // namespace
 
 Evidence::Evidence(const Diagnosis& verdict, const diagnosis::Measurement& measurement)
@@ -44,12 +40,12 @@ EffectTrace trace_of(const Evidence& evidence, std::size_t which) {
   const Effect effect = model.effects.at(which);
   model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(which));
   EffectTrace trace;
-  if (in_loop(effect)) {
+  if (diagnosis::acts_at(effect, Stage::kFeedback)) {
     trace.refitted = true;
     model.body = evidence.found.baseline.model.body;
     diagnosis::fit(model, evidence.signals, diagnosis::make_blocks(evidence.signals));
   }
-  const bool weighs = diagnosis::effect_kind(effect.kind).stage(effect) == Stage::kWeight;
+  const bool weighs = diagnosis::acts_at(effect, Stage::kWeight);
   if (trace.refitted || weighs) {
     ModelRun without = run_of(model, evidence.signals);
     trace.run = std::move(without.run);

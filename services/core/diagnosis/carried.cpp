@@ -118,17 +118,13 @@ Model without(const Model& model, std::size_t effect) {
   return other;
 }
 
-bool has_feedback(const Effect& effect) {
-  return effect_kind(effect.kind).stage(effect) == Stage::kFeedback;
-}
-
 void drop(CarriedModel& carried, std::size_t effect, const std::string& why, const Body& baseline,
           const PartsOut& parts) {
   carried.left_out.push_back(left_out(carried.model.effects[effect], why));
   carried.model = parts.refitted(without(carried.model, effect), baseline);
 }
 
-// Drops the nonlinearities inside the body of a model that is not stable.
+// Drops the nonlinearity inside the body of a model that is not stable.
 void keep_stable(CarriedModel& carried, const Signals& signals, const Body& baseline,
                  const PartsOut& parts) {
   while (true) {
@@ -136,10 +132,9 @@ void keep_stable(CarriedModel& carried, const Signals& signals, const Body& base
     note_seen(held, signals);
     carried.stability = stability_of(held, signals);
     if (carried.stability != Stability::kRefused) return;
-    const auto& effects = carried.model.effects;
-    const auto found = std::ranges::find_if(effects, has_feedback);
-    if (found == effects.end()) return;  // the body alone: the fit keeps it stable
-    drop(carried, static_cast<std::size_t>(found - effects.begin()),
+    const Effect* feedback = feedback_of(carried.model);
+    if (feedback == nullptr) return;  // the body alone: the fit keeps it stable
+    drop(carried, static_cast<std::size_t>(feedback - carried.model.effects.data()),
          "with it the model is not stable over the range that was seen", baseline, parts);
   }
 }
@@ -156,7 +151,7 @@ Signals bursts_masked(const Model& found, const Signals& signals) {
 // A law whose force turns with its argument: it moves as the motion does.  So may a curve, whose
 // heights are never exactly odd.
 bool is_odd_feedback(const Effect& effect) {
-  if (!has_feedback(effect)) return false;
+  if (!acts_at(effect, Stage::kFeedback)) return false;
   if (effect_kind(effect.kind).any_shape()) return true;
   const Nonlinearity law = effect_kind(effect.kind).feedback(effect);
   return std::ranges::all_of(std::array{0.3, 1.0, 3.0}, [&](double z) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
 #include "services/core/diagnosis/record/excited_band.hpp"
 
@@ -85,7 +86,7 @@ SizeCase size_case(const Model& model, std::size_t which, const Signals& signals
   result.centre_hz = centre_hz(
       effect.channels.empty() ? signals.inputs().front() : signals.at(effect.channels.front()),
       signals);
-  if (effect_kind(effect.kind).stage(effect) != Stage::kFeedback || run.argument.empty()) {
+  if (!acts_at(effect, Stage::kFeedback) || run.argument.empty()) {
     return result;
   }
   result.largest_argument = largest_deflection(run.argument, 0.0, signals);

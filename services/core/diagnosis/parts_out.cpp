@@ -47,7 +47,7 @@ std::vector<std::size_t> borders_of(const Blocks& parts) {
 Model bare_of_terms(const Model& model) {
   Model bare = model;
   for (Effect& effect : bare.effects) {
-    if (effect.is_whole() && effect_kind(effect.kind).stage(effect) == Stage::kTerm) {
+    if (effect.is_whole() && acts_at(effect, Stage::kTerm)) {
       std::ranges::fill(effect.coefficients, 0.0);
     }
   }
@@ -86,9 +86,7 @@ std::vector<Stretch> rest_of(const Signals& apart, const Blocks& parts, std::siz
 
 // The numbers of its effects are as many as the body's order says.
 bool is_bound_to_order(const Model& model) {
-  return passes_through_body(model) || std::ranges::any_of(model.effects, [](const Effect& effect) {
-           return effect_kind(effect.kind).stage(effect) == Stage::kFeedback;
-         });
+  return passes_through_body(model) || feedback_of(model) != nullptr;
 }
 
 }  // namespace

@@ -74,10 +74,6 @@ constexpr double kSmallestPlanted = 0.02;  // [-] of the residual
 constexpr double kLargestPlanted = 20.0;
 constexpr int kHalvings = 8;  // of the range on a logarithmic axis: to 3 %
 
-bool leaves_out(const Effect& effect) {
-  return effect_kind(effect.kind).stage(effect) == Stage::kWeight;
-}
-
 // What an effect adds to the prediction, about its mean, with an RMS of 1; of one that leaves
 // samples out, a step at these.  Zeros where it adds nothing.
 Eigen::VectorXd added_by(const Effect& effect, const Model& model, const Signals& signals,
@@ -89,7 +85,7 @@ Eigen::VectorXd added_by(const Effect& effect, const Model& model, const Signals
   if (!run.finite) return column;
   const Eigen::Map<const Eigen::VectorXd> weight(without.weight.data(), std::ssize(without.weight));
   const Eigen::Map<const Eigen::VectorXd> weight_with(run.weight.data(), std::ssize(run.weight));
-  if (leaves_out(effect)) {
+  if (acts_at(effect, Stage::kWeight)) {
     column = weight - weight_with;
   } else {
     column = Eigen::Map<const Eigen::VectorXd>(run.prediction.data(), column.size()) -
@@ -111,7 +107,7 @@ std::string channel_of(const Effect& effect, const Signals& signals) {
 
 PlantedLimit limit_of(const Effect& effect, Eigen::Index k, double residual_rms,
                       const PlantedRule& rule) {
-  const bool left_out = leaves_out(effect);
+  const bool left_out = acts_at(effect, Stage::kWeight);
   const auto share_found = [&](double size) {
     return rule.share_found(k, size * residual_rms, left_out);
   };
@@ -169,7 +165,7 @@ std::vector<PlantedLimit> planted_limits(const Model& model, const Signals& sign
     if (!(added.col(k).squaredNorm() > 0.0)) return;
     all[e] = limit_of(effects[e], k, rms, rule);
     all[e].channel = channel_of(effects[e], signals);
-    all[e].beyond_linear = leaves_out(effects[e]) ? 1.0 : plain.beyond(k);
+    all[e].beyond_linear = acts_at(effects[e], Stage::kWeight) ? 1.0 : plain.beyond(k);
   });
   return hardest_of_each(all);
 }

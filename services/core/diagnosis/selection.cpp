@@ -85,8 +85,7 @@ bool is_rounding(double rmse, const Signals& signals) {
 bool by_rmse(const Trial& a, const Trial& b) { return a.rmse < b.rmse; }
 
 bool passes_over_samples(const Trial& trial) {
-  const Effect& effect = trial.model.effects.back();
-  return effect_kind(effect.kind).stage(effect) == Stage::kWeight;
+  return acts_at(trial.model.effects.back(), Stage::kWeight);
 }
 
 bool ties_with(const Trial& other, const Trial& best, double current_rmse,

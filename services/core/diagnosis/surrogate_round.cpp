@@ -6,6 +6,7 @@
 
 #include "services/core/diagnosis/detection/surrogates.hpp"
 #include "services/core/diagnosis/fitting/screening.hpp"
+#include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/evaluation.hpp"
 
 namespace stillhand::diagnosis {
@@ -14,7 +15,7 @@ namespace {
 // A term by its columns, each with a factor of its own; others by what they add to the prediction.
 Eigen::MatrixXd added_by(const Trial& trial, const Screening& screening) {
   const Effect& effect = trial.model.effects.back();
-  if (effect_kind(effect.kind).stage(effect) == Stage::kTerm) {
+  if (acts_at(effect, Stage::kTerm)) {
     return screening.as_added(screening.term_columns(effect));
   }
   FreeRun run;

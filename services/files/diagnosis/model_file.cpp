@@ -203,7 +203,7 @@ void check_effects(const Model& model, const std::vector<Entry>& entries) {
   for (std::size_t i = 0; i < model.effects.size(); ++i) {
     const Effect& effect = model.effects[i];
     try {
-      if (effect_kind(effect.kind).stage(effect) == Stage::kFeedback && ++feedbacks > 1) {
+      if (acts_at(effect, Stage::kFeedback) && ++feedbacks > 1) {
         entries[i].refuse("one effect inside of the body at a time");
       }
       const std::size_t count = coefficients_of(effect, model, signals);

@@ -86,10 +86,7 @@ std::vector<Effect> of_maps(const Signals& signals) {
 std::vector<Effect> of_springs(const Model& model, const Signals& signals) {
   const double y = signals.output().deviation;
   const auto& a = model.body.denominator;
-  const bool has_loop = std::ranges::any_of(model.effects, [](const Effect& each) {
-    return effect_kind(each.kind).stage(each) == Stage::kFeedback;
-  });
-  if (model.body.order() == 0 || has_loop) {
+  if (model.body.order() == 0 || feedback_of(model) != nullptr) {
     return {with("nonlinear_stiffness", "at the output", {}, kPart / (y * y))};
   }
   std::vector<double> path(model.body.order(), 0.0);

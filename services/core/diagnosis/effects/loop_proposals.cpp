@@ -93,11 +93,8 @@ std::vector<Proposal> loop_proposals(const Screening& screening, const std::stri
                                      const std::string& form, const Shape& shape,
                                      bool homogeneous) {
   const Body& body = screening.model().body;
-  if (body.order() < 2) return {};
   // One nonlinearity inside the body at a time: the data hardly distinguish two.
-  for (const Effect& each : screening.model().effects) {
-    if (effect_kind(each.kind).stage(each) == Stage::kFeedback) return {};
-  }
+  if (body.order() < 2 || feedback_of(screening.model()) != nullptr) return {};
   const std::string& unit = screening.signals().output().unit;
   const Effect effect{kind, form, {}, {{"threshold", unit, 1.0, 0.0, 1.0, !homogeneous}}, {}};
   const std::vector<double> thresholds = homogeneous ? std::vector<double>{1.0} : kThresholds;

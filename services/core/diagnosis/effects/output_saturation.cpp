@@ -248,10 +248,7 @@ std::vector<Body> bodies_to_stop(const Screening& screening) {
 // stop from another nonlinearity inside the body.
 std::vector<Proposal> where_it_rests(const Screening& screening) {
   const Model& model = screening.model();
-  const bool has_loop = std::ranges::any_of(model.effects, [](const Effect& each) {
-    return effect_kind(each.kind).stage(each) == Stage::kFeedback;
-  });
-  const bool may_stop = !has_loop && model.body.order() > 0;
+  const bool may_stop = feedback_of(model) == nullptr && model.body.order() > 0;
   const Signal& output = screening.signals().output();
   const auto [low, high] = std::ranges::minmax(output.values);
   std::vector<Proposal> all;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/contract/expects.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -80,6 +81,20 @@ void gain_in_part(const Effect& effect, const Signals& signals, std::span<double
   std::vector<double> whole(gain.size(), 1.0);
   kind.gain(effect, signals, whole);
   for (std::size_t n = 0; n < gain.size(); ++n) gain[n] *= 1.0 + effect.share * (whole[n] - 1.0);
+}
+
+bool acts_at(const Effect& effect, Stage stage) {
+  return effect_kind(effect.kind).stage(effect) == stage;
+}
+
+const Effect* feedback_of(const Model& model) {
+  const Effect* feedback = nullptr;
+  for (const Effect& effect : model.effects) {
+    if (!acts_at(effect, Stage::kFeedback)) continue;
+    STILLHAND_EXPECTS(feedback == nullptr);
+    feedback = &effect;
+  }
+  return feedback;
 }
 
 bool passes_through_body(const Model& model) {

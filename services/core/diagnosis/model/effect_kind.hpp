@@ -121,6 +121,9 @@ double slope_in_part(const EffectKind& kind, const Effect& effect, double value)
 /// Multiplies `gain`, one a sample.
 void gain_in_part(const Effect& effect, const Signals& signals, std::span<double> gain);
 
+bool acts_at(const Effect& effect, Stage stage);
+/// The one that acts inside the body, nullptr for none.  A model has one at most.
+const Effect* feedback_of(const Model& model);
 /// True when an effect of the model passes the body's poles: the body keeps its order.
 bool passes_through_body(const Model& model);
 

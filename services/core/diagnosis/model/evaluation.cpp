@@ -6,7 +6,6 @@
 #include <cmath>
 #include <span>
 
-#include "services/core/contract/expects.hpp"
 #include "services/core/diagnosis/model/effect_kind.hpp"
 #include "services/core/diagnosis/model/interpolation.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
@@ -253,20 +252,6 @@ double runaway_bound(const Signal& output) {
   constexpr double kOfNothing = 1e30;
   const double size = output.deviation + std::abs(output.mean);
   return size > 0.0 ? kRunaway * size : kOfNothing;
-}
-
-bool acts_at(const Effect& effect, Stage stage) {
-  return effect_kind(effect.kind).stage(effect) == stage;
-}
-
-const Effect* feedback_of(const Model& model) {
-  const Effect* feedback = nullptr;
-  for (const Effect& effect : model.effects) {
-    if (!acts_at(effect, Stage::kFeedback)) continue;
-    STILLHAND_EXPECTS(feedback == nullptr);
-    feedback = &effect;
-  }
-  return feedback;
 }
 
 void run_all(const Model& model, const Signals& signals, ModelRun& run) {

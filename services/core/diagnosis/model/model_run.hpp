@@ -51,8 +51,4 @@ Evaluation evaluated(const Model& model, const Signals& signals);
 /// @param at  of the same model, finite
 Eigen::MatrixXd jacobian_of(const Model& model, const Signals& signals, const Evaluation& at);
 
-bool acts_at(const Effect& effect, Stage stage);
-/// The one that acts inside the body, nullptr for none.  A model has one at most.
-const Effect* feedback_of(const Model& model);
-
 }  // namespace stillhand::diagnosis
