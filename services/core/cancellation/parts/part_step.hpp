@@ -36,8 +36,8 @@ class PartStep {
   virtual double moved_m(const Moment& /*now*/, double /*lever_m*/) noexcept { return 0.0; }
   /// The command behind all that was taken off [rad]; called of a row with `filters_command`.
   virtual double filtered_rad(double theta_rad) noexcept { return theta_rad; }
-  /// After the others of the same tick.  @param x_m  the stick's displacement
-  /// @param learns  all is in full effect
+  /// After the others of the same tick: the stick's displacement [m], and whether all is in full
+  /// effect.
   virtual void learn(double /*x_m*/, bool /*learns*/) noexcept {}
   /// What it knows of the stick is old.
   virtual void restart() noexcept {}

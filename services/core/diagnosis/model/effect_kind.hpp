@@ -60,8 +60,7 @@ class EffectKind {
   /// True when it takes any shape and has no law: tried apart from the others, Eq. DG-64.
   [[nodiscard]] virtual bool any_shape() const { return false; }
   /// any_shape(): a curve in place of another kind's phi inside the body, as it is where it has its
-  /// argument.  Its coefficients are left to the caller.
-  /// @param weight  of each sample
+  /// argument, with a weight for each sample.  Its coefficients are left to the caller.
   [[nodiscard]] virtual std::optional<Effect> drawn_after(
       const std::vector<double>& /*argument*/, const std::vector<double>& /*phi*/,
       const std::vector<double>& /*weight*/) const {
