@@ -134,6 +134,25 @@ TEST(EffectsOfPathsTest, AnOutputThatIsASize) {
   EXPECT_LT(std::min(alike, kCount - alike), 150u);
 }
 
+// Noise about zero is no sign: of a size as much as 1 % of the samples may be 5 % of the deviation
+// below zero.  Of the bodies of four orders the two best are tried.
+TEST(EffectsOfPathsTest, AnOutputWithMoreThanNoiseBelowZeroIsNoSize) {
+  const auto proposed = [](double below) {
+    std::vector<double> y = answer(kU);
+    for (double& value : y) value = std::abs(value);
+    std::vector<double> sorted = y;
+    std::ranges::sort(sorted);
+    const double deviation = std::sqrt(signal::variance(y));
+    for (double& value : y) value -= sorted[(kCount - 1) / 100] + below * deviation;
+    const Studied of(made::measurement_of({{"u", "V", kU}, {"y", "N", y}}), 2);
+    return std::ranges::count_if(
+        effect_kind("asymmetry").proposed(of.screening),
+        [](const Proposal& each) { return each.effect.form == "size at the output"; });
+  };
+  EXPECT_EQ(proposed(0.049), 2);
+  EXPECT_EQ(proposed(0.051), 0);
+}
+
 // Of an output that is 0.4 to 0.6 N the lower of two limits would be none.
 TEST(EffectsOfPathsTest, AnOutputOfOneSignHasNoTwoLimits) {
   const auto proposes_two = [](double level, double swing) {

@@ -163,4 +163,25 @@ TEST(SteadyStartTest, ALagLongerThanAChannelShowsIsNotProposed) {
   EXPECT_GT(longest_of_slow, 5.0) << "a slow channel may pass a slow path";
 }
 
+// Eq. DG-55: of white noise a lag T leaves the share 1/sqrt(2 T f_s), 0.112 at 0.4 s and 0.079 at
+// 0.8 s.
+TEST(SteadyStartTest, ALagMayBeAsLongAsATenthOfTheChannelPasses) {
+  constexpr std::size_t kLong = 6000;
+  const auto u = made::ride(kLong, 1);
+  const auto noise = made::white(kLong, 2);
+  std::vector<double> y(kLong);
+  double behind = 0.0;  // a lag of 0.2 s
+  for (std::size_t n = 0; n < kLong; ++n) {
+    behind += (1.0 - std::exp(-1.0 / 20.0)) * (noise[n] - behind);
+    y[n] = 2.0 * u[n] + 3.0 * behind;
+  }
+  const made::Studied studied(
+      made::measurement_of({{"u", "V", u}, {"v", "V", noise}, {"y", "N", y}}), 0);
+  std::vector<double> longest_s;
+  for (const Proposal& proposal : effect_kind("coupled_input").proposed(studied.screening)) {
+    if (proposal.effect.form == "lagged") longest_s.push_back(proposal.effect.parameters[0].upper);
+  }
+  EXPECT_THAT(longest_s, testing::ElementsAre(0.4));
+}
+
 }  // namespace stillhand::diagnosis::steady_start_test

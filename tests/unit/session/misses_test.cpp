@@ -196,6 +196,74 @@ TEST(MissesTest, TheForceIsJudgedToTheEndOfTheTrial) {
               testing::HasSubstr("force not whole again in this trial"));
 }
 
+// The stall of sensing, and a motor force of the test's own: `force(tick, f')` [N].
+template <typename Force>
+Miss miss_with(Force force, const Stop& stop = {"sensing", 2000, 2073}) {
+  SessionRecording recording = session({stop});
+  for (std::size_t n = 0; n < recording.rig_truths.size(); ++n) {
+    auto& truth = recording.rig_truths[n];
+    truth.motor_force_n(force(truth.tick(), recording.motor_commands[n].predicted_force_n()));
+  }
+  const auto sut = misses_in(recording);
+  EXPECT_THAT(sut, SizeIs(1));
+  return sut.at(0);
+}
+
+TEST(MissesTest, TheForceBeforeIsThatOfTheSecondBefore) {
+  const auto before_n = [](Tick first) {
+    return miss_with([&](Tick tick, double f) { return tick < first ? 0.0 : -f; }).force_before_n;
+  };
+  EXPECT_NEAR(before_n(1000), 5.0 / std::sqrt(2.0), 0.02);
+  EXPECT_NEAR(before_n(1500), 5.0 / 2.0, 0.02);
+}
+
+TEST(MissesTest, AForceOfLessThanAMillinewtonIsNone) {
+  const auto zero_s = [](double rms_n) {
+    const double part = rms_n * std::sqrt(2.0) / 5.0;
+    return miss_with(
+               [&](Tick tick, double f) { return tick >= 2000 && tick < 2073 ? 0.0 : -part * f; })
+        .zero_s;
+  };
+  EXPECT_EQ(zero_s(0.9e-3), 0.0);
+  EXPECT_NEAR(zero_s(1.1e-3), 0.073, 2e-3);
+}
+
+TEST(MissesTest, TheForceIsWholeAgainFrom97PercentOfItsShareOn) {
+  const auto back_s = [](double part) {
+    return miss_with([&](Tick tick, double f) {
+             return tick < 2000 ? -0.5 * f : tick < 2200 ? 0.0 : -0.5 * part * f;
+           })
+        .back_s;
+  };
+  EXPECT_TRUE(std::isnan(back_s(0.96)));
+  // Looked at in windows of 100 ms, of which all is whole.
+  EXPECT_NEAR(back_s(0.98), 0.2, 11e-3);
+}
+
+TEST(MissesTest, ATenthOfSomethingElseMakesTheForceNotThePredictions) {
+  const auto back_s = [](double other) {
+    return miss_with([&](Tick tick, double f) {
+             const double across_n =
+                 5.0 * std::cos(2.0 * std::numbers::pi * 2e-3 * static_cast<double>(tick));
+             return -f + other * across_n;
+           })
+        .back_s;
+  };
+  EXPECT_GT(back_s(0.095), 0.0);
+  EXPECT_EQ(back_s(0.105), 0.0);
+}
+
+// The ramp to zero takes 50 ms: a zero that comes later is the prediction's own.
+TEST(MissesTest, AForceIsZeroForTheStallWithinTheRampAlone) {
+  const auto zero_s = [](Tick first) {
+    return miss_with(
+               [&](Tick tick, double) { return tick >= first && tick < first + 20 ? 0.0 : 1.0; })
+        .zero_s;
+  };
+  EXPECT_NEAR(zero_s(2118), 0.020, 1e-9);
+  EXPECT_EQ(zero_s(2126), 0.0);
+}
+
 // Of another silence, another process, or another length, it says nothing of this one.
 TEST(MissesTest, TheReasonIsWhatTheProcessSaidOfThisSilence) {
   const auto why = [](const std::string& source, Tick said_at, double by_us) {
@@ -213,6 +281,11 @@ TEST(MissesTest, TheReasonIsWhatTheProcessSaidOfThisSilence) {
   EXPECT_EQ(why("sensing", 1900, 73'400), "");
   EXPECT_EQ(why("sensing", 3100, 73'400), "") << "more than a second later";
   EXPECT_EQ(why("sensing", 2200, 20'000), "");
+  // Within a fifth of its length.
+  EXPECT_EQ(why("sensing", 2200, 87'000), "stopped by a signal");
+  EXPECT_EQ(why("sensing", 2200, 88'500), "");
+  EXPECT_EQ(why("sensing", 2062, 73'400), "stopped by a signal");
+  EXPECT_EQ(why("sensing", 2055, 73'400), "");
 }
 
 TEST(MissesTest, AnEmptyRecordingHasNone) { EXPECT_THAT(misses_in({}), IsEmpty()); }
