@@ -155,8 +155,4 @@ std::string text_of(const std::filesystem::path& file) {
 
 Recording read_csv(const std::string& path) { return parse_csv(read_file(path), path); }
 
-Status write_csv(const std::string& path, const Recording& recording) {
-  return write_file_atomically(path, to_csv(recording));
-}
-
 }  // namespace stillhand::recording

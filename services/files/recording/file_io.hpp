@@ -84,7 +84,5 @@ std::string text_of(const std::filesystem::path& file);
 
 /// parse_csv() of a file.  @throws ConfigError like read_file() and parse_csv().
 Recording read_csv(const std::string& path);
-/// to_csv() into a file, atomically.
-Status write_csv(const std::string& path, const Recording& recording);
 
 }  // namespace stillhand::recording
