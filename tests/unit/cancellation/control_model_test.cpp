@@ -309,6 +309,10 @@ TEST(ControlModelTest, ASpringWithMemoryMayHoldAForceAndNotSwing) {
   EXPECT_EQ(refusal_of(model), Refusal::kNone);
   model.loop->e[1] = -2.1e-3;
   EXPECT_EQ(refusal_of(model), Refusal::kPath);
+  // Pushed to one side alone it stays there: it holds all of its force, and does not swing.
+  model.loop->e[1] = -1.9e-3;
+  model.inputs[0].map = {-20.0, 20.0, {0.0, 0.0, 20.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
 }
 
 TEST(ControlModelTest, WhatIsNoModelIsRefused) {
