@@ -58,7 +58,10 @@ Outcome outcome_of(const Side& side, const Condition& condition, std::size_t m) 
   out.least_gain = *std::ranges::min_element(gained);
   out.harmed = static_cast<std::size_t>(
       std::ranges::count_if(gained, [](double gain) { return gain < 0.0; }));
-  if (const Condition* still = side.find("A")) {
+  const Condition* still = side.find("A");
+  if (still == nullptr) return out;
+  const auto lost = known(gains(kMetrics[m], moving->values[m], still->values[m]));
+  if (!lost.empty() && statistics::mean(lost) > 0.0) {
     out.restored =
         statistics::restored_share(still->values[m], moving->values[m], condition.values[m]);
   }

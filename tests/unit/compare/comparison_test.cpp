@@ -45,6 +45,18 @@ TEST(ComparisonTest, StatesTheRestoredShareAndWhomItHarms) {
   EXPECT_DOUBLE_EQ(*outcome.least_gain, -0.5);
 }
 
+// A and B of 10 and 9 mm, of 0.4 and 0.5: nothing was lost that could be restored.
+TEST(ComparisonTest, RestoresNothingWhereTheMotionDidNoHarm) {
+  const Side calm{"one",
+                  {condition("A", {10.0, 10.0}, {0.4, 0.4}), condition("B", {9.0, 9.5}, {0.5, 0.5}),
+                   condition("C", {9.5, 9.0}, {0.45, 0.45})}};
+  const Comparison sut = compared({calm});
+  for (const std::size_t m : {kError, kDwell}) {
+    EXPECT_FALSE(sut.options.at(0).outcomes[m].restored.share) << m;
+    EXPECT_FALSE(sut.options.at(0).outcomes[m].restored.interval) << m;
+  }
+}
+
 TEST(ComparisonTest, LowerIsBetterForTheErrorAndHigherForTheDwellRatio) {
   Side both = side({condition("C", {20, 21, 22, 23}, {0.3, 0.3, 0.3, 0.35}),
                     condition("E", {25, 26, 27.5, 28}, {0.4, 0.5, 0.4, 0.45})});

@@ -240,6 +240,8 @@ TEST(CrossoverOperatorTest, SettingsOutOfRangeAreRefused) {
   CrossoverConfig slow_muscle;
   slow_muscle.muscle_rad_s = 5.0;  // 2 z / w_n = 0.28 s, more than T_d
   EXPECT_THROW(CrossoverOperator{slow_muscle}, ConfigError);
+  slow_muscle.delay_s = 2.0 * slow_muscle.muscle_damping_ratio / 5.0;
+  EXPECT_NO_THROW(CrossoverOperator{slow_muscle}) << "a muscle that is all of T_d";
   CrossoverConfig too_strong;
   too_strong.arm.max_force_n = 61.0;
   EXPECT_THROW(CrossoverOperator{too_strong}, ConfigError);

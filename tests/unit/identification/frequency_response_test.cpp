@@ -40,6 +40,7 @@ TEST(FrequencyResponseTest, FrequenciesAreEvenInTheirLogarithm) {
   EXPECT_NEAR(sut[0], 0.1, 1e-15);
   EXPECT_NEAR(sut[2], 1.0, 1e-14);
   EXPECT_NEAR(sut[4], 10.0, 1e-13);
+  EXPECT_EQ(log_spaced_hz(1.0, 4.0, 2), (std::vector<double>{1.0, 4.0}));
 }
 
 }  // namespace
