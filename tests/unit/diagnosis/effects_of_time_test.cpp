@@ -108,6 +108,23 @@ TEST(EffectsOfTimeTest, IsolatedBursts) {
                    {3, 42.55, 0.21, 0.21}});
 }
 
+// As one piece of the input, so that the fit takes them for a part of the body.
+TEST(EffectsOfTimeTest, BurstsThatBiasTheBodyComeWithOneFittedWithoutThem) {
+  const auto y = answer_and([](double t_s) {
+    return std::fmod(t_s, 20.0) < 0.5 ? 30.0 * std::sin(kTwoPi * 3.0 * t_s) : 0.0;
+  });
+  const made::Studied of(planted("transients", "isolated bursts", y).measurement, 2);
+  const auto sut = effect_kind("transients").proposed(of.screening);
+  ASSERT_EQ(sut.size(), 2u);
+  EXPECT_FALSE(sut[0].body);
+  ASSERT_TRUE(sut[1].body);
+  const Body truth = made::two_pole_body();
+  for (const std::size_t i : {1u, 2u}) {
+    const double biased = of.baseline.model.body.denominator[i] - truth.denominator[i];
+    EXPECT_LT(std::abs(sut[1].body->denominator[i] - truth.denominator[i]), 0.2 * std::abs(biased));
+  }
+}
+
 struct Burst {
   std::size_t first, rows;
   double square;  ///< of each row

@@ -71,6 +71,15 @@ TEST(PanelLayoutTest, PlotsFillThePictureButForTheirMargins) {
   EXPECT_THAT((std::vector{sut[0].x_label_px, sut[0].title_px}), near({251.0, 16.5}));
 }
 
+// Also of a picture that has no room for it.
+TEST(PanelLayoutTest, APlotHasThirtyPixelsEachWay) {
+  Figure asked = figure(1, 1);
+  asked.width_px = asked.height_px = 60;
+  const Rectangle plot = lay_out(asked)[0].plot;
+  EXPECT_NEAR(plot.right - plot.left, 30.0, 1e-9);
+  EXPECT_NEAR(plot.bottom - plot.top, 30.0, 1e-9);
+}
+
 // The rows of a legend are 19 px; above a plot it is 4 px from it, and the title shares its row
 // where both have room.  In a corner it is 8 and 6 px from the axes.
 TEST(PanelLayoutTest, ALegendHasItsPlaceAboveOrInACorner) {
