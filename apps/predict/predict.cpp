@@ -139,6 +139,23 @@ void check_inputs(const diagnosis::CarriedModel& carried, const Measurement& mea
   }
 }
 
+// Each channel of an effect, or what it is made of.
+void check_effects(const diagnosis::Model& model, const Measurement& measurement,
+                   const diagnosis::Signals& signals) {
+  for (const diagnosis::Effect& effect : model.effects) {
+    for (const std::string& name : effect.channels) {
+      if (std::ranges::find(signals.all(), name, &diagnosis::Signal::name) != signals.all().end()) {
+        continue;
+      }
+      std::string names;
+      for (const diagnosis::Channel& each : measurement.channels) names += ", " + each.name;
+      throw ConfigError(measurement.source + ": effect '" + effect.kind + "'",
+                        "no channel '" + name + "' among " + names.substr(2),
+                        "the channels of the recording that the model was fitted to");
+    }
+  }
+}
+
 Prepared prepared(const diagnosis::Model& model, const Measurement& measurement) {
   Prepared made{model, measurement, 1, {}};
   Measurement& whole = made.whole;
@@ -200,6 +217,7 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
   const Prepared made = prepared(carried.model, measurement);
   const diagnosis::Model& model = carried.model;
   const diagnosis::Signals measured(made.working, model.inputs, model.output);
+  check_effects(model, measurement, measured);
   diagnosis::Signals signals = measured.with_pasts();
   std::vector<bool> given(made.whole.size(), false);
   if (start_samples > 0) {

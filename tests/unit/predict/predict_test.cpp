@@ -162,7 +162,8 @@ TEST(PredictTest, WhatTheModelCannotBeRunOnIsRefusedWithItsReason) {
   };
   const std::pair<Model, testing::Matcher<std::string>> cases[]{
       {other_input, HasSubstr("elbow")},
-      {with({"coupled_input", "static", {"grip"}, {}, {1.0}}), HasSubstr("grip")},
+      {with({"coupled_input", "static", {"grip"}, {}, {1.0}}),
+       HasSubstr("effect 'coupled_input': got no channel 'grip' among u, ")},
       {with({"delay", "of the input", {}, {}, {}}), StartsWith("model: got ")}};
   for (const auto& each : cases) {
     EXPECT_THAT(support::refusal([&] {
