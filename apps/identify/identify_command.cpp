@@ -73,17 +73,18 @@ int run(const Arguments& arguments) {
   measurement::require_channels(measured, {arguments.identify.input, arguments.identify.output},
                                 read);
   const IdentifyResult result = identify(measured, arguments.identify);
+  const bool to_diagnose = result.unusable.empty() || result.reason == "effects";
   if (files.wants("--save")) {
     if (!result.unusable.empty()) {
       throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",
-                        "no --save, or another --order");
+                        "no --save; " + (to_diagnose ? "`stillhand diagnose` adds what it lacks"
+                                                     : measurement::step_for(result.reason)));
     }
     files.set_json("--save", identification::model_json(result.model));
   }
   if (files.wants("--json")) files.set_json("--json", result_json(result));
   files.publish();
   std::fputs(result_table(result).c_str(), stdout);
-  const bool to_diagnose = result.unusable.empty() || result.reason == "effects";
   report::say_next(to_diagnose
                        ? "stillhand diagnose " + report::quoted_for_shell(arguments.recording) +
                              measurement::words_of(arguments.read) + " says what this model lacks"

@@ -143,7 +143,8 @@ TEST_F(IdentifyCommandTest, AModelThatCannotCancelIsNotSaved) {
   csv.close();
   EXPECT_THAT(error_of({at("slow.csv"), "--order", "1", "--save", at("model.json"), "--json",
                         at("out.json")}),
-              HasSubstr("--save: got a model that can't cancel"));
+              AllOf(HasSubstr("--save: got a model that can't cancel"),
+                    HasSubstr("want no --save; the same command with a lower --order")));
   EXPECT_FALSE(fs::exists(at("out.json")));
   run({at("slow.csv"), "--order", "1", "--json", at("out.json")});
   const json out = json::parse(recording::read_file(at("out.json")));
