@@ -2,7 +2,7 @@
 // The report's figures.
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <span>
 
 #include "apps/close_the_loop/output.hpp"
 #include "apps/close_the_loop/repair_output.hpp"
@@ -59,7 +59,7 @@ report::Figure tracking_figure(const LoopRecord& record) {
   figure.columns = 3;
   figure.height_px = 560;
   constexpr std::size_t kShown = 6;
-  for (const Number& number : kNumbers | std::views::take(kShown)) {
+  for (const Number& number : std::span(kNumbers).first(kShown)) {
     figure.panels.push_back(number_panel(record, number));
   }
   return figure;

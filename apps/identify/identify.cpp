@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "apps/identify/worthless.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -41,9 +40,10 @@ const Channel& channel_of(const Measurement& measurement, const std::string& opt
                           const std::string& name) {
   const Channel* channel = measurement.find(name);
   if (channel != nullptr) return *channel;
-  const auto names = measurement.channels | std::views::transform(&Channel::name);
+  std::string names;
+  for (const Channel& each : measurement.channels) names += (names.empty() ? "" : ", ") + each.name;
   throw ConfigError(option, "'" + name + "'",
-                    fmt::format("one of {} in {}", fmt::join(names, ", "), measurement.source));
+                    fmt::format("one of {} in {}", names, measurement.source));
 }
 
 const Stretch& longest(const std::vector<Stretch>& stretches) {

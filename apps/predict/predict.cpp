@@ -209,6 +209,19 @@ diagnosis::Signals started_from_output(const Prepared& made, const diagnosis::Si
   return diagnosis::started(made.model, signals, states);
 }
 
+void check_start(const diagnosis::Model& model, const Measurement& measurement) {
+  const diagnosis::Channel* output = measurement.find(model.output);
+  if (output == nullptr || output->unit != model.output_unit) {
+    throw ConfigError("--start-from-output",
+                      "a recording without " + model.output + " [" + model.output_unit + "]",
+                      "one that holds the output of the model");
+  }
+  if (!(model.heldout_rmse > 0.0)) {
+    throw ConfigError("--start-from-output", "a model whose error is not known",
+                      "one that `stillhand diagnose --save` of this version wrote");
+  }
+}
+
 }  // namespace
 
 Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& measurement,
@@ -221,16 +234,7 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
   diagnosis::Signals signals = measured.with_pasts();
   std::vector<bool> given(made.whole.size(), false);
   if (start_samples > 0) {
-    const diagnosis::Channel* output = measurement.find(model.output);
-    if (output == nullptr || output->unit != model.output_unit) {
-      throw ConfigError("--start-from-output",
-                        "a recording without " + model.output + " [" + model.output_unit + "]",
-                        "one that holds the output of the model");
-    }
-    if (!(model.heldout_rmse > 0.0)) {
-      throw ConfigError("--start-from-output", "a model whose error is not known",
-                        "one that `stillhand diagnose --save` of this version wrote");
-    }
+    check_start(model, measurement);
     const auto rows = given_rows(made, start_samples);
     for (const auto& stretch : rows) {
       for (const std::size_t n : stretch) given[n] = true;

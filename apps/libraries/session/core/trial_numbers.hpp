@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <limits>
-#include <ranges>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "apps/libraries/session/core/trial_forces.hpp"
 #include "services/core/identification/tracking_metrics.hpp"
@@ -158,14 +159,19 @@ inline constexpr auto kNumbers = [] {
 /// Of the paper's tables: what is tested, and of which a share is restored.
 inline constexpr std::span<const Number, 3> kMetrics = std::span(kNumbers).first<3>();
 
+// Not std::views::filter: clang 14 (clang-tidy) does not compile that of GCC 12.
+inline std::vector<Number> numbers_if(auto wanted) {
+  std::vector<Number> out;
+  std::ranges::copy_if(kNumbers, std::back_inserter(out), wanted);
+  return out;
+}
 /// Those that one of In gives.
-inline auto numbers(unsigned in) {
-  return kNumbers | std::views::filter([in](const Number& each) { return (each.in & in) != 0; });
+inline std::vector<Number> numbers(unsigned in) {
+  return numbers_if([in](const Number& each) { return (each.in & in) != 0; });
 }
 /// Those of printed tables and pages.
-inline auto samples() {
-  return kNumbers |
-         std::views::filter([](const Number& each) { return each.shape == Shape::kSample; });
+inline std::vector<Number> samples() {
+  return numbers_if([](const Number& each) { return each.shape == Shape::kSample; });
 }
 /// In kNumbers, by its key in summary.json.
 consteval std::size_t index_of(std::string_view key) {
