@@ -40,7 +40,7 @@ void Peers::on_participant(const AnnouncedParticipant& announced) {
     if (is_replay_mark(user_data)) mark(participant);
   } else {
     services_.erase(participant);
-    std::erase_if(heard_, [&](const ertps::InstanceHandle_t& writer) {
+    std::erase_if(heard_, [&participant = participant](const ertps::InstanceHandle_t& writer) {
       return ertps::iHandle2GUID(writer).guidPrefix == participant;
     });
     marked_now_.erase(participant);

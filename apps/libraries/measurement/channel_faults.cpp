@@ -79,9 +79,8 @@ double straight_rows(const std::vector<double>& x, double rate_hz) {
   });
   // The slopes of a coarse resolution are few.
   std::ranges::sort(slopes);
-  const auto same = std::ranges::unique(
-      slopes, [&](double a, double b) { return std::abs(a - b) <= 1e-3 * kStraight * most; });
-  slopes.erase(same.begin(), same.end());
+  const auto alike = [&](double a, double b) { return std::abs(a - b) <= 1e-3 * kStraight * most; };
+  slopes.erase(std::unique(slopes.begin(), slopes.end(), alike), slopes.end());
   if (static_cast<double>(even) < kLeastEven * static_cast<double>(lines) ||
       2 * slopes.size() < lines || rows > kLongest_s * rate_hz) {
     return 0.0;

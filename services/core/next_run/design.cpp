@@ -309,7 +309,8 @@ Measurement run_of(const motion::MotionTrajectory& motion, const Measurement& re
   run.stretches = {{0, count, 0.0, 0}};
   run.weight.assign(count, 1.0);
   for (const diagnosis::Channel& channel : recorded.channels) {
-    diagnosis::Channel& planned = run.channels.emplace_back(channel.name, channel.unit);
+    diagnosis::Channel& planned =
+        run.channels.emplace_back(diagnosis::Channel{channel.name, channel.unit, {}});
     planned.values.assign(count, 0.0);
     if (channel.name == output) continue;
     for (std::size_t n = 0; n < count; ++n) {

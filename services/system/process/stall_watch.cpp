@@ -197,7 +197,7 @@ std::optional<Stall> StallWatch::step() {
   silences_.consume_all([&](const Silence& each) {
     if (each.until_ns - each.from_ns > longest.until_ns - longest.from_ns) longest = each;
   });
-  std::ranges::rotate(accounts_, accounts_.end() - 1);
+  std::rotate(accounts_.begin(), accounts_.end() - 1, accounts_.end());
   accounts_.front() = account();
   if (longest.until_ns == 0) return std::nullopt;
   const auto* before =

@@ -135,7 +135,7 @@ std::string unpack(hid_t set, std::vector<double>& values) {
   }
   const auto [low, high] = valid_range(set);
   std::ranges::replace_if(
-      values, [&](double value) { return value < low || value > high; },
+      values, [low = low, high = high](double value) { return value < low || value > high; },
       std::numeric_limits<double>::quiet_NaN());
   for (const char* name : {"_FillValue", "missing_value"}) {
     const std::optional<double> missing = number_attribute(set, name);
