@@ -259,8 +259,9 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
                            [](const session::Disturbance& each) { return each.miss.late_s; });
   // The longest of each trial first: every mark of a figure has its line.
   std::set<session::Condition> had;
-  std::ranges::stable_partition(
-      worst, [&](const session::Disturbance& each) { return had.insert(each.label).second; });
+  std::stable_partition(worst.begin(), worst.end(), [&](const session::Disturbance& each) {
+    return had.insert(each.label).second;
+  });
   if (worst.size() > kMost) worst.resize(std::max(kMost, had.size()));
   std::ranges::stable_sort(worst, {},
                            [](const session::Disturbance& each) { return each.miss.from_ns; });
