@@ -23,6 +23,8 @@
 #include "apps/libraries/session/instructions.hpp"
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/files/cancellation/control_model_file.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/system/command_line/command_line.hpp"
 #include "services/system/process/remark.hpp"
@@ -59,6 +61,20 @@ std::uint64_t random_seed() {
   return source();
 }
 
+// A session checks it against its own settings, too.
+void require_control_model(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw ConfigError("--control-model", file.string(), "a file, or diagnosed");
+  }
+  try {
+    static_cast<void>(cancellation::parse_control_model(recording::read_file(file.string()),
+                                                        file.string(), kRig));
+  } catch (const ConfigError& error) {
+    throw ConfigError("--control-model", error.what(),
+                      "a control_model.json of `stillhand control-model` or `close-the-loop`");
+  }
+}
+
 void make(Typed typed) {
   std::istringstream list(typed.conditions);
   typed.design.conditions.clear();
@@ -68,9 +84,7 @@ void make(Typed typed) {
   typed.design.instructions = session::instructions(typed.design.who);
   const bool has_model = !typed.control_model.empty();
   const bool diagnosed = typed.control_model == kDiagnosed;
-  if (has_model && !diagnosed && !std::filesystem::is_regular_file(typed.control_model)) {
-    throw ConfigError("--control-model", typed.control_model.string(), "a file, or diagnosed");
-  }
+  if (has_model && !diagnosed) require_control_model(typed.control_model);
   const bool wants_model = std::ranges::count(typed.design.conditions, "C+") > 0;
   if (wants_model != has_model) {
     throw ConfigError("--control-model", has_model ? typed.control_model.string() : "nothing",

@@ -383,6 +383,11 @@ class RefusalTest(ExperimentTestCase):
         _, errors = experiment("new", self.folder / "plus", "--conditions", "A,C+", "--control-model",
                                self.folder / "none.json", status=2)
         self.assertIn("--control-model", errors)
+        other = self.folder / "model.json"
+        other.write_text('{"format": "stillhand model", "version": 1}')
+        _, errors = experiment("new", self.folder / "plus", "--conditions", "A,C+", "--control-model", other, status=2)
+        self.assertIn("want a control_model.json of `stillhand control-model`", errors)
+        self.assertFalse((self.folder / "plus").exists())
         pad = self.folder / "pad"
         experiment("new", pad, "--operator", "gamepad")
         for folder, words in ((pad, ()), (self.study, ("--gamepad", "/dev/input/event0"))):

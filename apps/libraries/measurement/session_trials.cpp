@@ -152,9 +152,11 @@ std::string all_names(const std::vector<SessionTrial>& trials, const SessionTria
   return text;
 }
 
+// A blinded trial answers to its number alone: its condition would find it.
 bool answers_to(const SessionTrial& trial, const std::string& wanted) {
-  return wanted == std::string(1, trial.letter) || (!wanted.empty() && wanted == trial.named) ||
-         wanted == std::to_string(trial.trial.number);
+  if (wanted == std::to_string(trial.trial.number)) return true;
+  return !trial.blinded && !wanted.empty() &&
+         (wanted == std::string(1, trial.letter) || wanted == trial.named);
 }
 
 // Identification before tracking, then by length.
@@ -169,7 +171,7 @@ bool less_wanted(const SessionTrial& a, const SessionTrial& b) {
 
 std::string SessionTrial::name() const {
   const double length_s = static_cast<double>(end_tick - trial.start_tick) * kControlPeriod_s;
-  if (blinded && trial.phase == TrialPhase::kTracking) {
+  if (blinded) {
     return fmt::format("{} ({:.4g} s)", trial.number, length_s);
   }
   return fmt::format("{} ({}, {:.4g} s)", trial.number,
@@ -200,7 +202,9 @@ SessionTrials find_trials(recording::McapReader& reader, const std::string& path
   SessionTrials found = finder.finish(path);
   if (!status.ok()) found.broken = status.text;
   const bool of_experiment = reader.find_metadata(recording::kExperimentRecord) != nullptr;
-  for (SessionTrial& trial : found.trials) trial.blinded = of_experiment;
+  for (SessionTrial& trial : found.trials) {
+    trial.blinded = of_experiment && trial.trial.phase == TrialPhase::kTracking;
+  }
   return found;
 }
 

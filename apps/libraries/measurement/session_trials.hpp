@@ -17,12 +17,12 @@ struct SessionTrial {
   std::string named;  ///< a mitigation's name, or "free": no letter; else empty
   Tick end_tick = 0;  ///< first tick after the trial; earlier than planned if it was ended early
   std::int64_t recorded_ticks = 0;  ///< [-] samples of stillhand/sensed within the trial
-  bool blinded = false;             ///< of an experiment: nobody reads its condition by accident
+  bool blinded = false;  ///< tracking in an experiment: nobody reads its condition by accident
 
   [[nodiscard]] bool holds(Tick tick) const noexcept {
     return tick >= trial.start_tick && tick < end_tick;
   }
-  /// "2 (B, 20 s)"; "2 (20 s)" of a tracking trial that is blinded
+  /// "2 (B, 20 s)"; "2 (20 s)" of one that is blinded
   [[nodiscard]] std::string name() const;
 };
 

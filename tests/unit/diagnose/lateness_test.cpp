@@ -12,6 +12,7 @@
 
 #include "places.hpp"
 #include "services/core/recording/experiment_record.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/session_file.hpp"
 #include "tests/support/stalled_session.hpp"
 
@@ -81,6 +82,7 @@ TEST_F(LatenessTest, SplitsWhatKnownStallsDidAheadOfTheVerdict) {
   add_splits(sut, page);
   EXPECT_THAT(page.html(), HasSubstr("samples and answers were late"));
   EXPECT_EQ(splits("1").size(), 1u);
+  EXPECT_EQ(splits("C").size(), 1u);
 }
 
 TEST_F(LatenessTest, ATrialWithoutCancellationOrBlindedHasNone) {
@@ -89,6 +91,10 @@ TEST_F(LatenessTest, ATrialWithoutCancellationOrBlindedHasNone) {
   EXPECT_EQ(splits_table(splits()), "");
   write(made, true, true);
   EXPECT_TRUE(splits().empty());
+  EXPECT_TRUE(splits("1").empty());
+  EXPECT_THAT(support::refusal([&] { (void)splits("C"); }),
+              HasSubstr("--trial: got C, want one of 1 (30 s) in "))
+      << "its condition would find it";
 }
 
 }  // namespace stillhand::diagnose::lateness_test
