@@ -201,6 +201,7 @@ diagnosis::Measurement read_table(const std::string& path, const ReadOptions& op
   std::unique_ptr<TableFile> file = open_table(path, mapping.form, options.most_values);
   ask_if_needed(*file, options, mapping);
   MappedRows mapped = apply_mapping(*file, mapping);
+  if (!mapped.loss.empty()) runtime::remark(mapped.loss);
   file.reset();  // a text is as large as its numbers
   convert_chosen(mapped.rows, options.channels, mapped.notes);
   diagnosis::Measurement out =

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "apps/libraries/measurement/read.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -15,16 +16,21 @@
 
 namespace stillhand::measurement::bag_table_test {
 
+using testing::AllOf;
 using testing::Contains;
+using testing::Field;
 using testing::HasSubstr;
 
 constexpr std::int32_t kEpoch_s = 1'700'000'000;
 
+constexpr std::size_t kChunk_bytes = 100'000;  // 2 to 3 s of both sensors at 100 Hz
+
 // A ROS 2 recording with an IMU at 100 Hz and a force sensor at 200 Hz, 2.5 ms later.
 class Bag {
  public:
-  explicit Bag(const std::string& path)
-      : sink_(path, recording::Existing::kReplace), writer_(sink_, options()) {
+  explicit Bag(const std::string& path,
+               recording::Compression compression = recording::Compression::kZstd)
+      : sink_(path, recording::Existing::kReplace), writer_(sink_, options(compression)) {
     const auto imu = writer_.add_schema("sensor_msgs/msg/Imu", "ros2msg", tests::imu_definition());
     imu_ = writer_.add_channel("/imu/data", imu, "cdr");
     const auto wrench =
@@ -52,9 +58,11 @@ class Bag {
   void close() { ASSERT_TRUE(writer_.close().ok()); }
 
  private:
-  static recording::McapWriterOptions options() {
+  static recording::McapWriterOptions options(recording::Compression compression) {
     recording::McapWriterOptions options;
     options.profile = "ros2";
+    options.compression = compression;
+    options.chunk_bytes = kChunk_bytes;
     return options;
   }
   static tests::CdrBytes head(std::int64_t time_ns) {
@@ -79,6 +87,24 @@ class Bag {
 };
 
 std::string path_of(const char* name) { return testing::TempDir() + name; }
+
+// Where the chunks of an MCAP file begin: a record is its kind, the length of its content in 8
+// bytes, and its content (MCAP specification, "Records").
+std::vector<std::size_t> chunks_of(const std::string& bytes) {
+  constexpr std::size_t kHead = 9;
+  constexpr char kChunk = 6;
+  std::vector<std::size_t> out;
+  std::uint64_t length = 0;
+  for (std::size_t at = 8; at + kHead < bytes.size(); at += kHead + length) {
+    std::memcpy(&length, bytes.data() + at + 1, sizeof length);
+    if (bytes[at] == kChunk) out.push_back(at);
+  }
+  return out;
+}
+
+void write_bytes(const std::string& path, const std::string& bytes) {
+  ASSERT_TRUE(recording::write_file_atomically(path, bytes).ok());
+}
 
 std::string error_of(const std::string& path, const ReadOptions& options = {}) {
   return support::refusal([&] { (void)read_measurement(path, options); });
@@ -170,15 +196,19 @@ TEST(BagTableTest, AFileWithoutSuchMessagesIsRefused) {
 }
 
 // The clock of the recording machine is set back by 5 s in the middle.
-TEST(BagTableTest, StampsThatGoBackBeginANewStretchAndAreNamed) {
-  const std::string path = path_of("back.mcap");
-  Bag bag(path);
+void write_step_back(Bag& bag) {
   for (std::int64_t i = 0; i < 2000; ++i) {
     const std::int64_t time_ns = i * 10'000'000 - (i < 1000 ? 0 : 5'000'000'000) + 1'000'000'000;
     bag.imu(time_ns, 1e-3 * static_cast<double>(i) + 0.1 * static_cast<double>(i % 3));
     bag.wrench(time_ns, static_cast<double>(i % 7) + 1e-3 * static_cast<double>(i));
   }
   bag.close();
+}
+
+TEST(BagTableTest, StampsThatGoBackBeginANewStretchAndAreNamed) {
+  const std::string path = path_of("back.mcap");
+  Bag bag(path);
+  write_step_back(bag);
   const auto sut = read_measurement(
       path, mapped({"/imu/data.linear_acceleration.y=a_y", "/stick/wrench.wrench.force.y=f"}));
   ASSERT_EQ(sut.stretches.size(), 2u);
@@ -203,6 +233,39 @@ TEST(BagTableTest, StampsThatGoBackInOneTopicAloneAreRefused) {
   EXPECT_THAT(error_of(path, mapped({"/imu/data.linear_acceleration.y=a_y",
                                      "/stick/wrench.wrench.force.y=f"})),
               HasSubstr("time stamps that go back, but not those of /imu/data"));
+}
+
+// Whichever chunk it is, also the one that held the instants to which the stamps go back.
+TEST(BagTableTest, OfADamagedFileTheLossIsSaidAndStampsThatGoBackAreStillFound) {
+  const std::string path = path_of("damaged.mcap");
+  Bag bag(path);
+  write_step_back(bag);
+  const std::string whole = recording::read_file(path);
+  const std::vector<std::size_t> chunks = chunks_of(whole);
+  ASSERT_GT(chunks.size(), 6u);
+  for (const std::size_t chunk : chunks) {
+    std::string damaged = whole;
+    damaged[chunk + 100] ^= 1;
+    write_bytes(path, damaged);
+    const auto sut = read_measurement(
+        path, mapped({"/imu/data.linear_acceleration.y=a_y", "/stick/wrench.wrench.force.y=f"}));
+    EXPECT_THAT(sut.notes, Contains(AllOf(HasSubstr("Loss: "), HasSubstr("chunk lost")))) << chunk;
+    EXPECT_THAT(sut.screening, Contains(Field(&diagnosis::SampleFault::what, "time_goes_back")))
+        << chunk;
+  }
+}
+
+TEST(BagTableTest, AChangedByteShowsInTheChecksumOfTheWholeFileWhereAChunkHasNone) {
+  const std::string path = path_of("no_checksum.mcap");
+  Bag bag(path, recording::Compression::kNone);
+  write_step_back(bag);
+  std::string bytes = recording::read_file(path);
+  // In the content of a chunk: two times and a size of 8 bytes each, and then the checksum.
+  const std::size_t checksum = chunks_of(bytes)[1] + 9 + 24;
+  bytes.replace(checksum, 4, 4, '\0');
+  write_bytes(path, bytes);
+  const auto sut = read_measurement(path, mapped({"/imu/data.linear_acceleration.y=a_y"}));
+  EXPECT_THAT(sut.notes, Contains(AllOf(HasSubstr("Loss: "), HasSubstr("data section differs"))));
 }
 
 }  // namespace stillhand::measurement::bag_table_test

@@ -226,6 +226,8 @@ MappedRows apply_mapping(TableFile& file, const Mapping& asked) {
   RawColumns raw = file.read(choice.columns);
   out.back_steps = std::move(raw.back_steps);
   out.notes = head.notes;
+  out.loss = head.loss;
+  if (!head.loss.empty()) out.notes.push_back("Loss: " + head.loss + ".");
   out.notes.push_back(head.form + ": " + sources + ".");
   out.notes.insert(out.notes.end(), raw.notes.begin(), raw.notes.end());
   for (std::size_t i = 0; i < raw.values.size(); ++i) conversions[i].apply(raw.values[i]);

@@ -16,6 +16,7 @@ struct MappedRows {
   recording::Recording rows;
   std::vector<std::string> notes;
   std::vector<BackStep> back_steps = {};
+  std::string loss = {};  ///< as TableHead's
 };
 
 /// Takes the columns that the mapping names, converts their units and leaves out rows that lack a

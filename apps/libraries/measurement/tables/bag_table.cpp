@@ -32,6 +32,7 @@ double number_of(const Cell& cell) {
 // and a writer with another definition has more of them.
 constexpr double kMostMisfits = 0.05;
 constexpr std::ptrdiff_t kFarBack_rows = 100;
+constexpr std::int64_t kFarBack_ns = 1'000'000'000;
 // Between the segments of stamps that went back: no bridge reaches over it.
 constexpr std::int64_t kBetweenSegments_ns = 2'000'000'000;
 
@@ -58,8 +59,9 @@ struct TopicRows {
   std::vector<std::size_t> segments;  // first message of each, as they came; the stamps go back
 
   // A message that comes late has a stamp that no other has.  Where the stamps have gone back,
-  // those that follow lie among those that came before.
-  void find_segments() {
+  // those that follow lie among those that came before.  Of a file that has lost messages, these
+  // may be the ones: there, a second's worth of rows that goes back is enough.
+  void find_segments(bool lossy) {
     segments = {0};
     std::size_t latest = 0;
     for (std::size_t i = 1; i < time_ns.size(); ++i) {
@@ -77,7 +79,8 @@ struct TopicRows {
       // A second's worth of rows ahead of all others is no message that came late.
       const bool ahead =
           at(end) - at(i) >= kFarBack_rows && *high < *std::min_element(at(segments.back()), at(i));
-      if (ahead || 2 * among >= at(end) - at(i)) {
+      const bool far = at(end) - at(i) >= kFarBack_rows || *high - *low >= kFarBack_ns;
+      if (ahead || 2 * among >= at(end) - at(i) || (lossy && far)) {
         segments.push_back(i);
         latest = i;
       } else {
@@ -122,12 +125,17 @@ struct TopicRows {
 
 // The file, its reader and its topics, open as long as the table.
 struct OpenBag {
-  explicit OpenBag(const std::string& path) : file(path), reader(file) {
+  explicit OpenBag(const std::string& from) : path(from), file(from), reader(file) {
     if (!reader.status().ok()) {
       throw ConfigError(path, reader.status().text, "an MCAP recording of a session or of ROS 2");
     }
     topics = find_bag_topics(reader, path);
   }
+  // What is lost of what has been read so far.
+  [[nodiscard]] std::string loss() const {
+    return recording::loss_line(path, reader, std::nullopt, file.being_written());
+  }
+  std::string path;
   recording::FileSource file;
   recording::McapReader reader;
   BagTopics topics;
@@ -180,6 +188,7 @@ class BagTable : public TableFile {
     RawColumns out;
     check_size(by_topic);
     collect(columns, by_topic);
+    set_loss(bag_->loss());
     note_misfits(by_topic, out);
     follow_back_steps(by_topic, out);
     std::int64_t zero_ns = std::numeric_limits<std::int64_t>::max();
@@ -234,7 +243,7 @@ class BagTable : public TableFile {
     std::size_t most = 1;
     for (auto& [number, rows] : by_topic) {
       if (rows.time_ns.empty()) return;
-      rows.find_segments();
+      rows.find_segments(bag_->reader.lost_bytes() > 0);
       most = std::max(most, rows.segments.size());
     }
     for (const auto& [number, rows] : by_topic) {
@@ -274,13 +283,12 @@ class BagTable : public TableFile {
 
   void collect(const std::vector<std::size_t>& columns,
                std::map<std::size_t, TopicRows>& by_topic) {
-    recording::MessageFilter filter;
-    for (const auto& [number, rows] : by_topic) filter.topics.push_back(name(number));
     std::vector<Cell> cells;
+    // Not the wanted topics alone: a chunk without a checksum has that of the whole data section.
     const recording::Status status =
-        bag_->reader.for_each_message(filter, [&](const recording::MessageView& message) {
+        bag_->reader.verify([&](const recording::MessageView& message) {
           const auto found = bag_->topics.by_channel.find(message.channel.id);
-          if (found == bag_->topics.by_channel.end()) return true;
+          if (found == bag_->topics.by_channel.end()) return;
           const auto number =
               static_cast<std::size_t>(std::ranges::find_if(bag_->topics.topics,
                                                             [&](const auto& topic) {
@@ -288,15 +296,14 @@ class BagTable : public TableFile {
                                                             }) -
                                        bag_->topics.topics.begin());
           const auto rows = by_topic.find(number);
-          if (rows == by_topic.end()) return true;
+          if (rows == by_topic.end()) return;
           std::size_t behind = 0;
           if (!found->second->columns->read(message.bytes, cells, &behind)) {
             ++rows->second.misfits;
-            return true;
+            return;
           }
           if (behind > 0) ++rows->second.longer;
           take(message, *found->second, cells, columns, rows->second);
-          return true;
         });
     if (!status.ok()) throw ConfigError(head().path, status.text, "a file that can be read");
   }
@@ -348,9 +355,7 @@ std::unique_ptr<TableFile> bag_table(const std::string& path, std::size_t most_v
   auto bag = std::make_unique<OpenBag>(path);
   std::vector<Source> sources;
   TableHead head = head_of_bag(*bag, path, sources);
-  const std::string loss =
-      recording::loss_line(path, bag->reader, std::nullopt, bag->file.being_written());
-  if (!loss.empty()) head.notes.push_back("Loss: " + loss + ".");
+  head.loss = bag->loss();
   return std::make_unique<BagTable>(std::move(bag), std::move(head), std::move(sources),
                                     most_values);
 }

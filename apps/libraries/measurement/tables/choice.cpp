@@ -66,6 +66,7 @@ std::size_t find_column(const TableHead& head, const std::string& from) {
   const auto same = std::ranges::count(titles, from);
   std::string noted;  // a column may be there, and not be read
   for (const std::string& note : head.notes) noted += " (" + in_one_line(note) + ")";
+  if (!head.loss.empty()) noted += " (" + in_one_line(head.loss) + ")";
   throw ConfigError("--map",
                     same > 1 ? fmt::format("'{}', the title of {} columns", from, same)
                              : "'" + from + "', which is no column of " + head.path,

@@ -26,6 +26,7 @@ struct TableHead {
   double rate_hz = 0.0;    ///< [Hz] stated by the file; 0: none
   bool has_times = false;  ///< its rows have times of their own, which no column holds
   std::vector<std::string> notes;
+  std::string loss = {};  ///< of a damaged file, as far as it was read; empty: nothing is lost
 };
 
 /// Where the stamps of a file go back; time goes on in the rows, with a gap.
@@ -59,6 +60,10 @@ class TableFile {
   [[nodiscard]] virtual std::string place(std::size_t row) const {
     return head_.path + ", row " + std::to_string(row + 1);
   }
+
+ protected:
+  /// Damage may show only where the values lie.
+  void set_loss(std::string line) { head_.loss = std::move(line); }
 
  private:
   TableHead head_;
