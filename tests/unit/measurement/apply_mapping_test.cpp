@@ -57,6 +57,24 @@ TEST(ApplyMappingTest, TitlesThatStateEverythingNeedNoMapping) {
   EXPECT_EQ(sut.rows.columns[1].unit, "%") << "a name without a unit of its own keeps the file's";
 }
 
+TEST(ApplyMappingTest, ALineOfUnitsThatContradictsTheTitlesIsRefusedUntilTheMappingDecides) {
+  const std::string rows = "0.0,1,2\n0.01,1,2\n";
+  const std::string text = "t [s],a_y [m/s^2],f [N]\n[s],[g],[lbf]\n" + rows;
+  EXPECT_THAT(error_of(text), HasSubstr("ride.csv:2:1: got [g] below the title 'a_y [m/s^2]', "
+                                        "want one unit of each column; "));
+  for (const auto& [unit, value] : {std::pair("m/s^2", 1.0), {"g", 9.80665}}) {
+    const std::string wish = std::string("a_y [m/s^2]=a_y [") + unit + "]";
+    const MappedRows sut = read(text, mapping({"t [s]=t", wish.c_str()}));
+    EXPECT_EQ(sut.rows.columns[0].values[0], value) << unit;
+  }
+  EXPECT_THAT(error_of(text, mapping({"t [s]=t", "f [N]=f"})), HasSubstr("got [lbf] below"));
+  // The same units, also in other words, and words in brackets that are no unit.
+  const MappedRows sut = read("t [s],a_y (m/s^2),acc (left)\n[sec],[m s-2],[g]\n" + rows,
+                              mapping({"t [s]=t", "a_y (m/s^2)=a_y", "acc (left)=a_x"}));
+  EXPECT_EQ(sut.rows.columns[0].values[0], 1.0);
+  EXPECT_EQ(sut.rows.columns[1].values[0], 2.0 * 9.80665);
+}
+
 TEST(ApplyMappingTest, TheRefusalShowsTheMappingThatWouldDo) {
   EXPECT_THAT(error_of("time,acc,force\n0,1,2\n0.01,1,2\n"),
               HasSubstr("ride.csv: got the columns 'time', 'acc', 'force', want 't [s]' and 'name "

@@ -95,7 +95,9 @@ std::pair<std::string, std::string> units_of(const ColumnHead& column, const Col
                                 : si == "rad/s" && !column.angle_unit.empty()
                                     ? column.angle_unit + "/s"
                                     : "";
-  const std::string stated = column.unit.empty() ? of_angles : column.unit;
+  // Of a title and a line of units that contradict each other, the mapping says which is right.
+  const bool decides = !column.unit_below.empty() && !wish.unit.empty();
+  const std::string stated = decides ? wish.unit : column.unit.empty() ? of_angles : column.unit;
   std::string from = stated.empty() ? wish.unit : stated;
   if (!si.empty()) {
     // A unit that is not the channel's own says what the values are, whatever the title says.
@@ -108,9 +110,16 @@ std::pair<std::string, std::string> units_of(const ColumnHead& column, const Col
 
 UnitConversion conversion_of(const TableHead& head, const ColumnHead& column,
                              const ColumnWish& wish) {
+  if (!column.unit_below.empty() && wish.unit.empty()) {
+    throw ConfigError(head.path + ":" + std::to_string(column.unit_line) + ":1",
+                      "[" + column.unit_below + "] below the title '" + column.title + "'",
+                      "one unit of each column; a --map that states it, 'TITLE=NAME [UNIT]', says "
+                      "which of the two is right");
+  }
   const auto [from, to] = units_of(column, wish);
   // A unit in the mapping that is not the title's must measure the same thing.
-  const bool stated_twice = !column.unit.empty() && !wish.unit.empty() && wish.gain.unit.empty();
+  const bool stated_twice = !column.unit.empty() && column.unit_below.empty() &&
+                            !wish.unit.empty() && wish.gain.unit.empty();
   auto conversion = unit_conversion(from, wish.gain, to);
   if (stated_twice && !unit_conversion(column.unit, {}, wish.unit)) conversion.reset();
   if (conversion) return *conversion;

@@ -16,6 +16,8 @@ struct ColumnHead {
   std::string unit;             ///< empty: the file states none
   std::size_t rows = 0;         ///< [-] 0: not known yet
   std::string angle_unit = {};  ///< of a file that states one for all its angles
+  std::string unit_below = {};  ///< of a line of units, where it contradicts the title's; or empty
+  std::size_t unit_line = 0;    ///< number of that line
 };
 
 /// What a file states about its columns.

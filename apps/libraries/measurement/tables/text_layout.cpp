@@ -217,6 +217,7 @@ void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, RowW
   const std::size_t cells = rows.cells;
   const char separator = out.form.separator;
   std::vector<std::vector<std::string>> above;
+  std::size_t nearest_line = 0;
   std::string_view comment;
   for (std::size_t i = first_row; i-- > 0 && above.size() < 2;) {
     if (is_comment(lines[i].text)) {
@@ -225,7 +226,10 @@ void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, RowW
     }
     std::vector<std::string> titles = titles_in(lines[i].text, separator, rows);
     if (titles.size() == cells) {
-      if (above.empty() && plain_cell(lines[i].text).ends_with(kComment)) out.comment_cells = 1;
+      if (above.empty()) {
+        nearest_line = lines[i].number;
+        if (plain_cell(lines[i].text).ends_with(kComment)) out.comment_cells = 1;
+      }
       above.push_back(std::move(titles));
       continue;
     }
@@ -244,6 +248,7 @@ void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, RowW
   }
   if (above.size() == 2 && are_units(above[0])) {
     for (std::string& cell : above[0]) out.units.push_back(bare_unit(cell));
+    out.units_line = nearest_line;
     above.erase(above.begin());
   }
   if (!above.empty()) out.titles = std::move(above[0]);
@@ -266,6 +271,7 @@ void take_labview(const std::vector<TextLine>& lines, std::size_t first_row, Tex
       cells[0] = "s";
       cells.resize(out.titles.size());
       out.units = std::move(cells);
+      out.units_line = lines[i].number;
     } else if (cells.size() > 1 && cells[0] == "X_Columns") {
       no_times = cells[1] == "No";
     } else if (cells.size() > 1 && cells[0] == "Delta_X") {

@@ -15,6 +15,7 @@ struct TextLayout {
   TextForm form;                    ///< no zeros
   std::vector<std::string> titles;  ///< one for each cell of a row
   std::vector<std::string> units;   ///< of a line of units below the titles; empty: none
+  std::size_t units_line = 0;       ///< its number
   std::size_t comment_cells = 0;    ///< [-] that a row may have behind those of its titles
   double rate_hz = 0.0;             ///< [Hz] of LabVIEW's Delta_X, without a column of times; or 0
   bool in_degrees = false;          ///< a line above says "inDegrees=yes", as OpenSim does

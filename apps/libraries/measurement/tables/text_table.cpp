@@ -10,12 +10,32 @@
 #include "apps/libraries/measurement/tables/text_cells.hpp"
 #include "apps/libraries/measurement/tables/text_layout.hpp"
 #include "apps/libraries/measurement/tables/titles.hpp"
+#include "apps/libraries/measurement/tables/units.hpp"
 #include "services/core/contract/config_error.hpp"
 
 namespace stillhand::measurement {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+// "-" and "1" stand in a line of units for none.
+bool says_a_unit(const std::string& text) { return text != "%" && is_unit(text); }
+
+bool same_unit(const std::string& a, const std::string& b) {
+  const auto conversion = unit_conversion(a, {}, b);
+  return conversion && conversion->is_identity();
+}
+
+// The unit of a line of units counts where the title has none, or brackets around another word.
+void take_unit_below(const TextLayout& layout, std::size_t number, ColumnHead& column) {
+  const std::string& below = number < layout.units.size() ? layout.units[number] : column.unit;
+  if (!says_a_unit(column.unit)) {
+    if (column.unit.empty() || says_a_unit(below)) column.unit = below;
+  } else if (says_a_unit(below) && !same_unit(below, column.unit)) {
+    column.unit_below = below;
+    column.unit_line = layout.units_line;
+  }
+}
 
 TableHead head_of_text(const TextLayout& layout, const std::string& path, const std::string& note) {
   TableHead head;
@@ -25,10 +45,10 @@ TableHead head_of_text(const TextLayout& layout, const std::string& path, const 
   head.form = "Text table with " + separator_name(layout.form.separator) +
               " between columns and '" + std::string(1, layout.form.decimal) + "' as decimal sign";
   for (std::size_t i = 0; i < layout.titles.size(); ++i) {
-    Title title = parse_title(layout.titles[i]);
-    if (title.unit.empty() && !layout.units.empty()) title.unit = layout.units[i];
+    const Title title = parse_title(layout.titles[i]);
     head.columns.push_back(
         {layout.titles[i], title.name, title.unit, 0, layout.in_degrees ? "degree" : ""});
+    take_unit_below(layout, i, head.columns.back());
   }
   return head;
 }
