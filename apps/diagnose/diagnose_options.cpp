@@ -32,7 +32,7 @@ std::vector<diagnosis::Measurement> read_recordings(const std::vector<std::strin
   std::vector<diagnosis::Measurement> parts;
   for (const std::string& path : recordings) {
     parts.push_back(measurement::read_measurement(path, read));
-    measurement::require_channels(parts.back(), names, read);
+    measurement::require_channels(parts.back(), names, read, "--input, --output");
   }
   check_enough(parts, options);
   return parts;

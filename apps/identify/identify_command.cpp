@@ -71,7 +71,7 @@ int run(const Arguments& arguments) {
   read.channels = {{arguments.identify.input}, arguments.identify.output};
   const diagnosis::Measurement measured = measurement::read_measurement(arguments.recording, read);
   measurement::require_channels(measured, {arguments.identify.input, arguments.identify.output},
-                                read);
+                                read, "--input, --output");
   const IdentifyResult result = identify(measured, arguments.identify);
   const bool to_diagnose = result.unusable.empty() || result.reason == "effects";
   if (files.wants("--save")) {

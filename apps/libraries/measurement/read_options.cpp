@@ -107,7 +107,8 @@ std::string words_of(const ReadOptions& options) {
 }
 
 void require_channels(const diagnosis::Measurement& measurement,
-                      const std::vector<std::string>& names, const ReadOptions& options) {
+                      const std::vector<std::string>& names, const ReadOptions& options,
+                      const std::string& where) {
   const auto missing = std::ranges::find_if(
       names, [&](const std::string& name) { return measurement.find(name) == nullptr; });
   if (missing == names.end()) return;
@@ -117,6 +118,12 @@ void require_channels(const diagnosis::Measurement& measurement,
   }
   const std::string& path = measurement.source;
   const bool is_table = kind_of(path) != FileKind::kMcap || !is_session(path);
+  // A mapping gives a column the name of one of Stillhand's channels, and no other.
+  const bool mends = *missing != "t" && !si_unit(*missing).empty();
+  if (!mends) {
+    throw ConfigError(where.empty() ? path : where, "'" + *missing + "', no channel of " + path,
+                      want);
+  }
   if (is_table && options.mapping.columns.empty() && options.map_file.empty()) {
     want += "; " + words_to_add(*open_table(path, options.mapping.form, options.most_values));
   }

@@ -28,11 +28,12 @@ void add_heaviest_option(command_line::Command& verb, double& heaviest_kg);
 std::string words_of(const ReadOptions& options);
 
 /// @param names   channels that the verb can't do without
+/// @param where   options that state them; empty: none
 /// @throws stillhand::ConfigError for one that the recording lacks, with those that it has and, of
-/// a
-///         table without a mapping, the --map that may help.
+///         a table without a mapping, the --map that may help.
 void require_channels(const diagnosis::Measurement& measurement,
-                      const std::vector<std::string>& names, const ReadOptions& options);
+                      const std::vector<std::string>& names, const ReadOptions& options,
+                      const std::string& where = {});
 
 /// What to do next where a recording gives no model.
 /// @param reason  of diagnosis::NoModel

@@ -95,6 +95,31 @@ TEST(ApplyMappingTest, TheRefusalShowsTheMappingThatWouldDo) {
       << "a mapping that the next call would refuse";
 }
 
+TEST(ApplyMappingTest, ATitleThatStandsTwiceIsSaidToAndTheOfferedMappingWorks) {
+  const std::string rows = "0.0,1,2,3\n0.01,1,2,3\n";
+  EXPECT_THAT(error_of("t [s],a_y [m/s^2],f [N],a_y [m/s^2]\n" + rows),
+              HasSubstr("ride.csv: got the title 'a_y [m/s^2]' twice (#2 and #4), want every name "
+                        "once; if they are these, add --map 't [s]=t [s]' '#2=a_y [m/s^2]' "));
+  EXPECT_THAT(error_of("t [s],a_y [m/s^2],f [N],t [ms]\n" + rows),
+              HasSubstr("got the name 't' twice (#1 and #4)"));
+  const MappedRows sut = read("t [s],a_y [m/s^2],f [N],a_y [m/s^2]\n" + rows,
+                              mapping({"t [s]=t [s]", "#2=a_y [m/s^2]", "f [N]=f [N]"}));
+  EXPECT_EQ(sut.rows.columns.size(), 2u);
+}
+
+TEST(ApplyMappingTest, AUnitOfAnotherQuantityIsTheFault) {
+  const std::string rows = "0.0,1,2\n0.01,1,2\n";
+  for (const auto& [titles, fault] :
+       {std::pair("t [s],a_y [furlong],f [N]\n",
+                  "got the unit furlong of 'a_y [furlong]', want a "
+                  "unit of a_y, such as m/s^2: "),
+        {"t [s],a_y [N],f [m/s^2]\n", "got the unit N of 'a_y [N]', want a unit of a_y"}}) {
+    const std::string error = error_of(titles + rows);
+    EXPECT_THAT(error, HasSubstr(fault));
+    EXPECT_THAT(error, testing::Not(HasSubstr("--map")));
+  }
+}
+
 TEST(ApplyMappingTest, RowsThatLackAValueAreLeftOutAndCounted) {
   const MappedRows sut = read("t,a,f,x\n0,1,2,\n0.1,,2,\n0.2,NaN,,\n0.3,1,2\n0.4,1,2,7\n",
                               mapping({"t=t [s]", "a=a_y [m/s^2]", "f=f [N]"}));

@@ -76,9 +76,10 @@ TEST(GuessTest, ATitleIsTakenForWhatItsWordsBeginWith) {
                            {"acc", "g", "a_y [g]"},
                            {"acc_g", "", "a_y [g]"},
                            {"acc_g", "mm/s^2", "a_y [mm/s^2]"},
-                           {"acc_g", "V", "a_y [g]"},
+                           // A unit of another quantity would be refused.
+                           {"acc_g", "V", ""},
                            {"angle deg", "", "theta [deg]"},
-                           {"acc_V", "V", "a_y [m/s^2]"}}) {
+                           {"acc_V", "V", ""}}) {
     const auto guess =
         guess_column({each.title, each.title, each.unit}, 0, head_of({{each.title, each.unit}}));
     const std::string text = guess ? wish_text(*guess) : std::string(each.title) + "=";
@@ -95,6 +96,23 @@ TEST(GuessTest, EachChannelIsGuessedOnceAndATimeOnlyOfAFileThatHasNone) {
   EXPECT_EQ(command_words(sut), "--map '#2=a_y [m/s^2]' 'force=f [N]'");
   sut.rate_hz = 0.5;
   EXPECT_THAT(command_words(sut), EndsWith("' --sample-rate 0.5"));
+}
+
+// As `stillhand export` writes two topics of ROS 2: the last part of a title counts most.
+TEST(GuessTest, OfTitlesWithAPathTheLastPartSaysWhatTheColumnIs) {
+  const TableHead head = head_of({{"imu/angular_velocity_covariance_0", ""},
+                                  {"imu/header_stamp_sec", ""},
+                                  {"imu/linear_acceleration_covariance_4", ""},
+                                  {"imu/linear_acceleration_y", ""},
+                                  {"imu/log_time", ""},
+                                  {"imu/t", ""},
+                                  {"stick_wrench/sequence", ""},
+                                  {"stick_wrench/header_stamp_nanosec", ""},
+                                  {"stick_wrench/wrench_force_x", ""},
+                                  {"stick_wrench/wrench_force_y", ""}});
+  EXPECT_THAT(texts(guess_mapping(head)),
+              ElementsAre("imu/linear_acceleration_y=a_y [m/s^2]", "imu/t=t [s]",
+                          "stick_wrench/wrench_force_y=f [N]"));
 }
 
 // The middle one of the steps; a column that steps by 1 alone may count, and is no time.

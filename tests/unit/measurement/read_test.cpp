@@ -88,6 +88,17 @@ TEST(ReadTest, TitlesThatNameNoChannelOfTheModelComeWithTheWordsThatMapThem) {
   require_channels(sut, {"Acc Y", "Grip force"}, {});
 }
 
+TEST(ReadTest, ANameThatNoMappingGivesIsTheFaultOfItsOption) {
+  const Measurement sut =
+      read_measurement(file_of(with_titles("t [s],a_y [m/s^2],f [N],T [degC]")));
+  for (const std::string name : {"zz", "t", ""}) {
+    EXPECT_EQ(
+        support::refusal([&] { require_channels(sut, {"a_y", name}, {}, "--input, --output"); }),
+        "--input, --output: got '" + name + "', no channel of " + sut.source +
+            ", want one of a_y, f, T");
+  }
+}
+
 TEST(ReadTest, EveryReasonAgainstAModelHasAStepThatMendsIt) {
   EXPECT_THAT(step_for("unit"), HasSubstr("--map 'TITLE=NAME [UNIT]'"));
   EXPECT_THAT(step_for("filter"), HasSubstr("--order"));
@@ -169,7 +180,7 @@ TEST(ReadTest, AKnownNameInAnotherUnitIsConvertedOrRefused) {
   text.replace(0, text.find('\n'), "t [s],a_y [g],f [N],temp [degC]");
   EXPECT_EQ(read_measurement(file_of(text)).find("a_y")->values[1], 0.1 * 9.80665);
   EXPECT_THAT(complaint("t [s],a_y [V],f [N]\n0,1,2\n1,1,2\n"),
-              HasSubstr("--map 't [s]=t [s]' 'a_y [V]=a_y [m/s^2]' 'f [N]=f [N]'"));
+              HasSubstr("got the unit V of 'a_y [V]', want a unit of a_y, such as m/s^2"));
 }
 
 // Slow sensors exist; the note is for those whose times are milliseconds.

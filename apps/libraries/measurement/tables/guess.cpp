@@ -104,8 +104,16 @@ std::string reference_to(const TableHead& head, std::size_t number) {
              : "#" + std::to_string(number + 1);
 }
 
+bool is_bookkeeping(const ColumnHead& column) {
+  const std::string title = lower_case(column.name);
+  return title.ends_with("sequence") || title.ends_with("nanosec") ||
+         title.ends_with("stamp_sec") || title.ends_with("stamp.sec") ||
+         title.find("covariance") != std::string::npos;
+}
+
 std::optional<ColumnWish> guess_column(const ColumnHead& column, std::size_t number,
                                        const TableHead& head) {
+  if (is_bookkeeping(column)) return std::nullopt;
   const std::string title = lower_case(column.name);
   for (const Hint& hint : kHints) {
     const std::size_t at = find_word(title, hint.word);
@@ -116,21 +124,47 @@ std::optional<ColumnWish> guess_column(const ColumnHead& column, std::size_t num
     wish.name = hint.name == "axis" ? std::string("a_") + axis : std::string(hint.name);
     // The lateral one of several forces.
     if (wish.name == "f" && axis != 'y') continue;
+    // A unit of another quantity: the mapping would be refused.
+    if (!column.unit.empty() && !unit_conversion(column.unit, {}, si_unit(wish.name))) continue;
     wish.unit = unit_for(column, wish.name);
     return wish;
   }
   return std::nullopt;
 }
 
+namespace {
+
+// Of a title with a path, '/stick/wrench.force_y', its last part says what the column is, and the
+// rest what the sensor is; a part that is a channel's name says it best.
+enum class Part { kName, kLast, kWhole };
+
+std::optional<ColumnWish> guess_part(const TableHead& head, std::size_t number, Part part) {
+  ColumnHead column = head.columns[number];
+  if (part == Part::kWhole) return guess_column(column, number, head);
+  if (is_bookkeeping(column)) return std::nullopt;
+  column.name.erase(0, column.name.find_last_of("/.") + 1);
+  std::optional<ColumnWish> wish = guess_column(column, number, head);
+  if (part == Part::kName && wish && wish->name != lower_case(column.name)) wish.reset();
+  return wish;
+}
+
+}  // namespace
+
 Mapping guess_mapping(const TableHead& head) {
-  Mapping out;
-  for (std::size_t i = 0; i < head.columns.size(); ++i) {
-    std::optional<ColumnWish> wish = guess_column(head.columns[i], i, head);
-    if (!wish || (wish->name == "t" && head.has_times)) continue;
-    if (std::ranges::find(out.columns, wish->name, &ColumnWish::name) != out.columns.end())
-      continue;
-    out.columns.push_back(std::move(*wish));
+  std::vector<std::pair<std::size_t, ColumnWish>> found;
+  for (const Part part : {Part::kName, Part::kLast, Part::kWhole}) {
+    for (std::size_t i = 0; i < head.columns.size(); ++i) {
+      std::optional<ColumnWish> wish = guess_part(head, i, part);
+      if (!wish || (wish->name == "t" && head.has_times)) continue;
+      const bool taken = std::ranges::any_of(found, [&](const auto& other) {
+        return other.first == i || other.second.name == wish->name;
+      });
+      if (!taken) found.emplace_back(i, std::move(*wish));
+    }
   }
+  std::ranges::sort(found, {}, &std::pair<std::size_t, ColumnWish>::first);
+  Mapping out;
+  for (auto& [number, wish] : found) out.columns.push_back(std::move(wish));
   return out;
 }
 

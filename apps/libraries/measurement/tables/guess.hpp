@@ -17,6 +17,10 @@ Mapping guess_mapping(const TableHead& head);
 std::optional<ColumnWish> guess_column(const ColumnHead& column, std::size_t number,
                                        const TableHead& head);
 
+/// True for columns of a recorder's own, which are no channel: counters, halves of a stamp,
+/// covariances.
+bool is_bookkeeping(const ColumnHead& column);
+
 /// How a column is named in a mapping: its title where it is the only one, else "#3".
 std::string reference_to(const TableHead& head, std::size_t number);
 

@@ -44,13 +44,40 @@ void fill_guess(const TableHead& head, bool timed, Mapping& guess) {
     if (std::ranges::find(guess.columns, name, &ColumnWish::name) != guess.columns.end()) continue;
     for (std::size_t i = 0; i < head.columns.size(); ++i) {
       const std::string from = reference_to(head, i);
-      if (!fits(head.columns[i], name) ||
+      if (!fits(head.columns[i], name) || is_bookkeeping(head.columns[i]) ||
           std::ranges::find(guess.columns, from, &ColumnWish::from) != guess.columns.end())
         continue;
       ColumnWish wish{from, name, si_unit(name), {}};
       guess.columns.insert(name == "t" ? guess.columns.begin() : guess.columns.end(), wish);
       break;
     }
+  }
+}
+
+// A name of a channel with a unit of another quantity: no mapping mends that.
+void refuse_other_unit(const TableHead& head) {
+  for (const ColumnHead& column : head.columns) {
+    const std::string unit = si_unit(column.name);
+    if (unit.empty() || fits(column, column.name)) continue;
+    throw ConfigError(head.path, "the unit " + column.unit + " of '" + column.title + "'",
+                      "a unit of " + column.name + ", such as " + unit +
+                          ": correct the title, or map the column with a gain and its unit");
+  }
+}
+
+void refuse_second_title(TableFile& file) {
+  const auto& columns = file.head().columns;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto first = std::ranges::find(columns, columns[i].name, &ColumnHead::name);
+    const auto place = static_cast<std::size_t>(first - columns.begin());
+    if (place == i || columns[i].unit.empty() || first->unit.empty()) continue;
+    const std::string places =
+        " (#" + std::to_string(place + 1) + " and #" + std::to_string(i + 1) + ")";
+    throw ConfigError(file.head().path,
+                      (first->title == columns[i].title ? "the title '" + first->title + "' twice"
+                                                        : "the name '" + first->name + "' twice") +
+                          places,
+                      "every name once; " + words_to_add(file));
   }
 }
 
@@ -88,6 +115,8 @@ std::string words_to_add(TableFile& file) {
 }
 
 void refuse_titles(TableFile& file) {
+  refuse_other_unit(file.head());
+  refuse_second_title(file);
   throw ConfigError(file.head().path, "the columns " + titles_of(file.head()),
                     "'t [s]' and 'name [unit]'; " + words_to_add(file));
 }
