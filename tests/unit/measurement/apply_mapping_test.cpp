@@ -120,6 +120,17 @@ TEST(ApplyMappingTest, AUnitOfAnotherQuantityIsTheFault) {
   }
 }
 
+TEST(ApplyMappingTest, ControlCharactersOfATitleReachNobody) {
+  const std::string text = "t [s],a_y [m/s^2],\x1b[31mf\x07 [N]\n0.0,1,2\n0.01,1,2\n";
+  const MappedRows sut = read(text);
+  EXPECT_EQ(sut.rows.columns[1].name, "?[31mf?");
+  EXPECT_THAT(sut.notes, Contains(HasSubstr("from '?[31mf? [N]'")));
+  // By the title as it is shown, and by its place.
+  for (const char* wish : {"?[31mf? [N]=f", "#3=f"}) {
+    EXPECT_EQ(read(text, mapping({"t [s]=t", wish})).rows.columns[0].values[0], 2.0) << wish;
+  }
+}
+
 TEST(ApplyMappingTest, RowsThatLackAValueAreLeftOutAndCounted) {
   const MappedRows sut = read("t,a,f,x\n0,1,2,\n0.1,,2,\n0.2,NaN,,\n0.3,1,2\n0.4,1,2,7\n",
                               mapping({"t=t [s]", "a=a_y [m/s^2]", "f=f [N]"}));

@@ -157,6 +157,15 @@ FileKind kind_of(const std::string& path) {
   return FileKind::kText;
 }
 
+TableFile::TableFile(TableHead head) : head_(std::move(head)) {
+  constexpr auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; };
+  for (ColumnHead& column : head_.columns) {
+    for (std::string* text : {&column.title, &column.name, &column.unit, &column.unit_below}) {
+      std::ranges::replace_if(*text, is_control, '?');
+    }
+  }
+}
+
 std::unique_ptr<TableFile> open_table(const std::string& path, const TextForm& form,
                                       std::size_t most_values) {
   switch (kind_of(path)) {

@@ -49,7 +49,9 @@ struct RawColumns {
 /// are worth reading.
 class TableFile {
  public:
-  explicit TableFile(TableHead head) : head_(std::move(head)) {}
+  /// Titles and units come out of the file: '?' replaces their control characters, before any of
+  /// them reaches a terminal.
+  explicit TableFile(TableHead head);
   virtual ~TableFile() = default;
   TableFile(const TableFile&) = delete;
   TableFile& operator=(const TableFile&) = delete;
