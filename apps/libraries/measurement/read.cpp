@@ -177,6 +177,9 @@ Mapping mapping_for(const std::string& path, const ReadOptions& options) {
                       "a mapping file, or a terminal on which it can be asked for");
   }
   if (!there) return options.mapping;
+  if (std::filesystem::is_directory(options.map_file, error)) {
+    throw ConfigError("--map-file", options.map_file + ", a folder", "a mapping file");
+  }
   Mapping mapping = read_mapping(options.map_file);
   if (options.mapping.rate_hz) mapping.rate_hz = options.mapping.rate_hz;
   if (options.mapping.form.separator != 0) mapping.form.separator = options.mapping.form.separator;

@@ -99,6 +99,13 @@ TEST(ReadTest, ANameThatNoMappingGivesIsTheFaultOfItsOption) {
   }
 }
 
+TEST(ReadTest, AFolderIsNoMappingFile) {
+  ReadOptions options;
+  options.map_file = testing::TempDir();
+  EXPECT_EQ(support::refusal([&] { (void)read_measurement(file_of(table(100)), options); }),
+            "--map-file: got " + options.map_file + ", a folder, want a mapping file");
+}
+
 TEST(ReadTest, EveryReasonAgainstAModelHasAStepThatMendsIt) {
   EXPECT_THAT(step_for("unit"), HasSubstr("--map 'TITLE=NAME [UNIT]'"));
   EXPECT_THAT(step_for("filter"), HasSubstr("--order"));

@@ -122,6 +122,24 @@ TEST(TextLayoutTest, DegreesAreStatedForAllAngles) {
   EXPECT_FALSE(find_layout("inDegrees=no\n" + rows, {}, "x").in_degrees);
 }
 
+TEST(TextLayoutTest, SignsThatHideTheTableAreTheFault) {
+  const char* text = "t,a\n0.0,1.5\n0.1,1.5\n";
+  const std::string want =
+      ", want ',' between columns and '.' as decimal sign, as the file has: leave --separator and "
+      "--decimal out";
+  EXPECT_EQ(error_of(text, {';', 0}),
+            "ride.csv: got no rows of numbers with ';' between columns" + want);
+  EXPECT_EQ(error_of(text, {0, ','}),
+            "ride.csv: got no rows of numbers with ',' as decimal sign" + want);
+  EXPECT_THAT(error_of("a letter\nof words\n", {';', 0}), HasSubstr("want a table: a line"));
+}
+
+TEST(TextLayoutTest, TooManyColumnsAreCounted) {
+  std::string row = "0";
+  for (int i = 0; i < 10'000; ++i) row += ",1";
+  EXPECT_EQ(error_of(row + "\n" + row + "\n"), "ride.csv: got 10001 columns, want at most 10000");
+}
+
 TEST(TextLayoutTest, SaysWhatIsWrong) {
   EXPECT_THAT(error_of(""), HasSubstr("ride.csv: got an empty file"));
   EXPECT_THAT(error_of("Dear reader,\n\nthis is a letter.\n"), HasSubstr("no rows of numbers"));

@@ -287,8 +287,29 @@ void take_labview(const std::vector<TextLine>& lines, std::size_t first_row, Tex
     throw ConfigError(path, "the data of a figure",
                       "the recording that the figure shows: its page names it");
   }
-  throw ConfigError(path, lines.empty() ? "an empty file" : "no rows of numbers",
-                    "a table: a line of titles, then rows of numbers");
+  constexpr const char* kTable = "a table: a line of titles, then rows of numbers";
+  throw ConfigError(path, lines.empty() ? "an empty file" : "no rows of numbers", kTable);
+}
+
+// A table that the signs of the command line or of the mapping's file hide.
+void refuse_signs(std::string_view text, const TextForm& asked, const std::string& path) {
+  if (asked.separator == 0 && asked.decimal == 0) return;
+  TextForm shown;
+  try {
+    shown = find_layout(text, {}, path).form;
+  } catch (const ConfigError&) {
+    return;  // no other signs help
+  }
+  const auto words = [](const TextForm& form) {
+    std::string out;
+    if (form.separator != 0) out = separator_name(form.separator) + " between columns";
+    if (form.decimal != 0) {
+      out += std::string(out.empty() ? "" : " and ") + "'" + form.decimal + "' as decimal sign";
+    }
+    return out;
+  };
+  throw ConfigError(path, "no rows of numbers with " + words(asked),
+                    words(shown) + ", as the file has: leave --separator and --decimal out");
 }
 
 }  // namespace
@@ -324,7 +345,14 @@ TextLayout find_layout(std::string_view text, const TextForm& asked, const std::
       best = std::move(reading);
     }
   }
-  if (best.score <= 0 || best.usual.cells > kMostColumns) refuse(lines, path);
+  if (best.score <= 0) {
+    refuse_signs(text, asked, path);
+    refuse(lines, path);
+  }
+  if (best.usual.cells > kMostColumns) {
+    throw ConfigError(path, std::to_string(best.usual.cells) + " columns",
+                      "at most " + std::to_string(kMostColumns));
+  }
   const TextLine& first = plain[first_row(best)];
   TextLayout out;
   out.form = best.form;
