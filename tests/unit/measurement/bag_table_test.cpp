@@ -195,6 +195,16 @@ TEST(BagTableTest, AFileWithoutSuchMessagesIsRefused) {
   EXPECT_THAT(error_of(path), HasSubstr("no topic to read (/json: got messages in 'json'"));
 }
 
+TEST(BagTableTest, OfAFileWhoseMessagesAreAllLostTheLossIsSaid) {
+  const std::string path = path_of("all_lost.mcap");
+  Bag bag(path);
+  bag.imu(0, 1.0);
+  bag.close();
+  const std::string whole = recording::read_file(path);
+  write_bytes(path, whole.substr(0, chunks_of(whole)[0] + 50));
+  EXPECT_THAT(error_of(path), HasSubstr("without messages (" + path + ": cut off, as after a"));
+}
+
 // The clock of the recording machine is set back by 5 s in the middle.
 void write_step_back(Bag& bag) {
   for (std::int64_t i = 0; i < 2000; ++i) {

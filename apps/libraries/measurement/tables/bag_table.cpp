@@ -161,8 +161,9 @@ TableHead head_of_bag(const OpenBag& bag, const std::string& path, std::vector<S
   }
   if (head.columns.empty()) {
     const auto& left_out = bag.topics.left_out;
+    const std::string lost = bag.loss().empty() ? "" : " (" + bag.loss() + ")";
     throw ConfigError(path,
-                      left_out.empty() ? "an MCAP file without messages"
+                      left_out.empty() ? "an MCAP file without messages" + lost
                                        : "no topic to read (" + left_out.front() + ")",
                       "messages in CDR with their definition (ros2msg or omgidl)");
   }
