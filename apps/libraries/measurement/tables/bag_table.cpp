@@ -74,8 +74,9 @@ struct TopicRows {
       const auto begin = time_ns.begin();
       const auto at = [&](std::size_t k) { return begin + static_cast<std::ptrdiff_t>(k); };
       const auto [low, high] = std::minmax_element(at(i), at(end));
-      const auto among = std::count_if(at(segments.back()), at(i),
-                                       [&](std::int64_t t) { return t >= *low && t <= *high; });
+      const auto among = std::count_if(
+          at(segments.back()), at(i),
+          [low = *low, high = *high](std::int64_t t) { return t >= low && t <= high; });
       // A second's worth of rows ahead of all others is no message that came late.
       const bool ahead =
           at(end) - at(i) >= kFarBack_rows && *high < *std::min_element(at(segments.back()), at(i));
