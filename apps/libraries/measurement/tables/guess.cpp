@@ -86,7 +86,7 @@ char axis_in(const std::string& rest) {
 // The column's unit where it has one that fits, or the title ends with one ("acc_g", "angle deg");
 // else the channel's own, for a person to correct.
 std::string unit_for(const ColumnHead& column, const std::string& name) {
-  const std::string wanted = si_unit(name);
+  std::string wanted = si_unit(name);
   const std::size_t end = column.name.find_last_of("_ ");
   const std::string last = end == std::string::npos ? "" : column.name.substr(end + 1);
   for (const std::string& unit : {column.unit, last}) {
