@@ -152,11 +152,9 @@ std::string all_names(const std::vector<SessionTrial>& trials, const SessionTria
   return text;
 }
 
-// A blinded trial answers to its number alone: its condition would find it.
 bool answers_to(const SessionTrial& trial, const std::string& wanted) {
-  if (wanted == std::to_string(trial.trial.number)) return true;
-  return !trial.blinded && !wanted.empty() &&
-         (wanted == std::string(1, trial.letter) || wanted == trial.named);
+  return wanted == std::string(1, trial.letter) || (!wanted.empty() && wanted == trial.named) ||
+         wanted == std::to_string(trial.trial.number);
 }
 
 // Identification before tracking, then by length.
@@ -214,7 +212,11 @@ const SessionTrial& choose(const SessionTrials& trials, const std::string& wante
     throw ConfigError(path, "a session without a recorded trial", "at least one trial");
   }
   if (wanted.empty()) return *std::ranges::max_element(trials.trials, less_wanted);
-  const auto answers = [&](const SessionTrial& trial) { return answers_to(trial, wanted); };
+  // To --trial a blinded one answers by its number alone: its condition would find it.
+  const auto answers = [&](const SessionTrial& trial) {
+    return last || !trial.blinded ? answers_to(trial, wanted)
+                                  : wanted == std::to_string(trial.trial.number);
+  };
   const auto count = std::ranges::count_if(trials.trials, answers);
   if (last ? count > 0 : count == 1) {
     return *std::find_if(trials.trials.rbegin(), trials.trials.rend(), answers);

@@ -40,7 +40,8 @@ struct SessionTrials {
 SessionTrials find_trials(recording::McapReader& reader, const std::string& path);
 
 /// @param wanted  as ReadOptions::trial
-/// @param last    of several that match take the last, instead of none
+/// @param last    of several that match take the last, instead of none; not of --trial, so a
+///                blinded one answers to its condition, too
 /// @throws stillhand::ConfigError naming the trials of the recording.
 const SessionTrial& choose(const SessionTrials& trials, const std::string& wanted,
                            const std::string& path, bool last = false);
