@@ -66,13 +66,8 @@ void require_control_model(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
     throw ConfigError("--control-model", file.string(), "a file, or diagnosed");
   }
-  try {
-    static_cast<void>(cancellation::parse_control_model(recording::read_file(file.string()),
-                                                        file.string(), kRig));
-  } catch (const ConfigError& error) {
-    throw ConfigError("--control-model", error.what(),
-                      "a control_model.json of `stillhand control-model` or `close-the-loop`");
-  }
+  static_cast<void>(
+      cancellation::parse_control_model(recording::read_file(file.string()), file.string(), kRig));
 }
 
 void make(Typed typed) {

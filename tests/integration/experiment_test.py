@@ -386,7 +386,7 @@ class RefusalTest(ExperimentTestCase):
         other = self.folder / "model.json"
         other.write_text('{"format": "stillhand model", "version": 1}')
         _, errors = experiment("new", self.folder / "plus", "--conditions", "A,C+", "--control-model", other, status=2)
-        self.assertIn("want a control_model.json of `stillhand control-model`", errors)
+        self.assertIn('model.json.format: got "stillhand model", want "stillhand control model"', errors)
         self.assertFalse((self.folder / "plus").exists())
         pad = self.folder / "pad"
         experiment("new", pad, "--operator", "gamepad")
