@@ -266,6 +266,7 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
   std::ranges::stable_sort(worst, {},
                            [](const session::Disturbance& each) { return each.miss.from_ns; });
   std::vector<std::string> lines;
+  lines.reserve(worst.size() + 1);
   for (const auto& [label, miss] : worst) {
     lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::in_words(label),
                                 miss.trial_s, session::what_happened(miss)));

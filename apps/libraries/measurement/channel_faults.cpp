@@ -129,8 +129,7 @@ std::size_t coarse_levels(const std::vector<double>& values) {
   constexpr double kLeastError = 0.01;  // of the variance, as what is held
   std::vector<double> levels = values;
   std::ranges::sort(levels);
-  const auto same = std::ranges::unique(levels);
-  levels.erase(same.begin(), same.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
   if (levels.size() < kFewest) return 0;
   double step = levels[1] - levels[0];
   for (std::size_t i = 2; i < levels.size(); ++i) step = std::min(step, levels[i] - levels[i - 1]);

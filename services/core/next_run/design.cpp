@@ -344,7 +344,7 @@ Plan best_plan(const Contest& contest, const Measurement& recorded, const Bounds
     });
   };
   for (int round = 0; round < kRounds; ++round) {
-    const auto seed = static_cast<std::uint64_t>(2 + 2 * round);
+    const auto seed = 2 + 2 * static_cast<std::uint64_t>(round);
     std::vector<Tried> more =
         tried(around(best_of()->design, band, seed), contest, recorded, bounds, for_each);
     all.insert(all.end(), std::make_move_iterator(more.begin()),

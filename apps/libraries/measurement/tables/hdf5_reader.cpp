@@ -168,10 +168,11 @@ void add_table(hid_t type, const std::string& path, hsize_t rows, Found& found) 
     H5free_memory(raw);
     if (name.empty()) continue;
     if (!is_number(member)) {
-      found.left_out.push_back(path + "." + name + " (" + class_name(member) + ")");
+      found.left_out.push_back(fmt::format("{}.{} ({})", path, name, class_name(member)));
       continue;
     }
-    found.heads.push_back({path + "." + name, path + "." + name, {}, rows});
+    const std::string title = fmt::format("{}.{}", path, name);
+    found.heads.push_back({title, title, {}, rows});
     found.places.push_back({path, name});
   }
 }
@@ -186,9 +187,9 @@ void add_matrix(const std::string& path, const std::array<hsize_t, 2>& size,
     return;
   }
   for (hsize_t i = 0; i < signals; ++i) {
-    const std::string number = std::to_string(i);
-    const std::string title =
-        signals == 1 ? path : path + (along_rows ? "[:," + number + "]" : "[" + number + ",:]");
+    const std::string title = signals == 1 ? path
+                              : along_rows ? fmt::format("{}[:,{}]", path, i)
+                                           : fmt::format("{}[{},:]", path, i);
     found.heads.push_back({title, title, unit, rows});
     found.places.push_back({path, {}, true, along_rows, i});
   }
