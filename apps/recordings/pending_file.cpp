@@ -31,6 +31,11 @@ std::string beside(const std::string& place) {
 PendingFile::PendingFile(std::string place) : place_(std::move(place)), path_(beside(place_)) {
   // A device or a folder would be replaced by a file: renaming does not ask.
   std::error_code none;
+  if (const auto folder = std::filesystem::absolute(place_).parent_path();
+      !std::filesystem::is_directory(folder, none)) {
+    throw ConfigError(place_, "a name in a folder that does not exist",
+                      "a name in a folder that exists");
+  }
   const auto status = std::filesystem::status(place_, none);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     throw ConfigError(place_, "something that is not a regular file",

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -43,6 +45,18 @@ int flushed(int status) {
   if (std::fflush(stdout) == 0 && std::cout.good() && std::ferror(stdout) == 0) return status;
   runtime::remark("standard output cannot be written; redirect it to a file or terminal with room");
   return status == 0 ? 1 : status;
+}
+
+// The library's own text says which of its functions failed.
+int refused(const std::filesystem::filesystem_error& error) {
+  const std::error_code& why = error.code();
+  const bool of_machine = why == std::errc::io_error || why == std::errc::no_space_on_device ||
+                          why == std::errc::too_many_files_open;
+  runtime::remark(
+      stillhand::ConfigError(error.path1().string(), why.message(),
+                             "a file or folder that this user can reach, on a sound disk with room")
+          .what());
+  return of_machine ? 1 : 2;
 }
 
 int run(int argc, char** argv) {
@@ -99,6 +113,8 @@ int run(int argc, char** argv) {
   } catch (const stillhand::lab::RefusedByProcess& error) {
     std::cerr << error.what() << '\n';
     return 2;
+  } catch (const std::filesystem::filesystem_error& error) {
+    return refused(error);
   } catch (const std::exception& error) {
     runtime::remark(error.what());
     return 1;

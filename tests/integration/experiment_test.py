@@ -378,6 +378,10 @@ class RefusalTest(ExperimentTestCase):
             self.assertEqual(len(errors.splitlines()), 1)
             self.assertIn(expected, errors)
             self.assertFalse(self.study.exists())
+        # What the system refuses, in the words of the system.
+        _, errors = experiment("new", self.folder / ("x" * 300), status=2)
+        self.assertEqual(len(errors.splitlines()), 1)
+        self.assertIn("xxx: got File name too long, want a file or folder", errors)
         self.new()
         self.assertIn("holds something", experiment("new", self.study, status=2)[1])
         _, errors = experiment("new", self.folder / "plus", "--conditions", "A,C+", "--control-model",
