@@ -120,11 +120,14 @@ class Exporter {
 
  private:
   void open_outlets() {
-    bool matched = false;
+    if (recording_.reader.channels().empty()) {
+      throw ConfigError(recording_.path, "a recording without a topic",
+                        "a recording with messages");
+    }
+    recording::require_each_matches(options_.topics, "--topics", recording_.reader.channels());
     const recording::TopicFilter wanted{options_.topics, {}};
     for (const auto& [id, channel] : recording_.reader.channels()) {
       if (!wanted.wants(channel.topic)) continue;
-      matched = true;
       try {
         const auto [schema, type] = schemas_.of(channel);
         by_channel_[id] = outlet_of(channel, *schema, *type);
@@ -133,12 +136,6 @@ class Exporter {
       }
     }
     drop_troubled();
-    if (!matched) {
-      throw options_.topics.empty()
-          ? ConfigError(recording_.path, "a recording without a topic", "a recording with messages")
-          : ConfigError("--topics", "no such topic",
-                        recording::one_of_topics(recording_.reader.channels()));
-    }
   }
 
   Outlet* outlet_of(const recording::Channel& channel, const recording::IdlSchema& schema,

@@ -83,6 +83,9 @@ bool is_latched(const runtime::WriterQos& qos) {
 }  // namespace
 
 void check_names(const ReplayOptions& options, const recording::McapReader& reader) {
+  recording::require_each_matches(options.topics.allow, "--topics", reader.channels());
+  // A mistyped name would play what was to be held back, a command to the motor for one.
+  recording::require_each_matches(options.topics.block, "--block", reader.channels());
   for (const auto& [recorded, written] : options.remap) {
     if (std::ranges::none_of(reader.channels(), [&name = recorded](const auto& channel) {
           return channel.second.topic == name;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "services/core/contract/config_error.hpp"
+
 namespace stillhand::recording {
 
 // If the text after the newest star does not match, the star takes one more character.  The time is
@@ -45,6 +47,17 @@ std::string one_of_topics(const std::map<ChannelId, Channel>& channels) {
   std::string text;
   for (const std::string& topic : topics) text += (text.empty() ? "one of " : ", ") + topic;
   return text.empty() ? "a recording with topics" : text;
+}
+
+void require_each_matches(const std::vector<std::string>& patterns, const std::string& option,
+                          const std::map<ChannelId, Channel>& channels) {
+  for (const std::string& pattern : patterns) {
+    if (std::ranges::none_of(channels, [&pattern](const auto& channel) {
+          return matches_pattern(pattern, channel.second.topic);
+        })) {
+      throw ConfigError(option, pattern + ", which no topic matches", one_of_topics(channels));
+    }
+  }
 }
 
 }  // namespace stillhand::recording

@@ -25,4 +25,8 @@ struct TopicFilter {
 /// "one of a, b" with every topic of a recording, for messages on an unknown name.
 std::string one_of_topics(const std::map<ChannelId, Channel>& channels);
 
+/// @throws ConfigError that names `option`, for a pattern that no topic of a recording matches
+void require_each_matches(const std::vector<std::string>& patterns, const std::string& option,
+                          const std::map<ChannelId, Channel>& channels);
+
 }  // namespace stillhand::recording

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/refusal.hpp"
+
 namespace stillhand::recording::topic_filter_test {
 namespace {
 
@@ -44,6 +46,9 @@ TEST(TopicFilterTest, TheTopicsOfARecordingAreNamedOnceEach) {
       {0, {0, 0, "b", "cdr", {}}}, {1, {1, 0, "a", "cdr", {}}}, {7, {7, 0, "b", "cdr", {}}}};
   EXPECT_EQ(one_of_topics(channels), "one of a, b");
   EXPECT_EQ(one_of_topics({}), "a recording with topics");
+  require_each_matches({"a", "?"}, "--topics", channels);
+  EXPECT_EQ(support::refusal([&] { require_each_matches({"a", "c*"}, "--block", channels); }),
+            "--block: got c*, which no topic matches, want one of a, b");
 }
 
 }  // namespace
