@@ -15,7 +15,6 @@
 #include "apps/calibrate/hand_off_steps.hpp"
 #include "apps/calibrate/platform_steps.hpp"
 #include "apps/libraries/report/command_line.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/files/settings/check_number.hpp"
 #include "services/system/command_line/command_line.hpp"

@@ -16,7 +16,6 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/population/population.hpp"
 #include "services/files/cancellation/control_model_file.hpp"

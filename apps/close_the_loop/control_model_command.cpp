@@ -18,7 +18,6 @@
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/working_set.hpp"
 #include "services/files/cancellation/control_model_file.hpp"

@@ -12,8 +12,8 @@
 #include "apps/compare/core/comparison.hpp"
 #include "apps/compare/findings.hpp"
 #include "apps/compare/summary_file.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/system/command_line/command_line.hpp"
@@ -40,7 +40,7 @@ void run_compare(const CompareOptions& options) {
   folder.write("comparison.json", comparison_json(all));
   folder.publish({std::begin(kReportFiles), std::end(kReportFiles)});
   std::cout << "comparison in " << options.out.string() << '\n';
-  report::say_next("open " + (options.out / "comparison.html").string());
+  report::say_open(options.out / "comparison.html");
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "apps/deploy/real_time_checks.hpp"
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/check_name.hpp"
 #include "services/system/command_line/command_line.hpp"

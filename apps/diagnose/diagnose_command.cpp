@@ -21,7 +21,6 @@
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/result_files.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/diagnosis/alignment.hpp"
 #include "services/core/diagnosis/diagnose.hpp"

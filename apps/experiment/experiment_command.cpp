@@ -19,7 +19,6 @@
 #include "apps/libraries/experiment/core/counterbalance.hpp"
 #include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "apps/libraries/report/command_line.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/instructions.hpp"
 #include "apps/libraries/session/protocol.hpp"
 #include "services/core/contract/config_error.hpp"
@@ -101,15 +100,13 @@ void make(Typed typed) {
                                 typed.design.participants,
                                 (typed.design.participants / round + 1) * round));
   }
-  std::printf("%s: read it, change it, then `stillhand experiment run %s`\n",
-              (typed.folder / kDesignFile).c_str(), typed.folder.c_str());
+  std::printf("%s: read it, change it, then `%s`\n", (typed.folder / kDesignFile).c_str(),
+              command_for("run", typed.folder).c_str());
 }
 
 // Of an experiment with everybody complete or excluded.
 void say_after(const Folder& folder) {
-  report::say_next(fmt::format("stillhand experiment {} {}",
-                               folder.unblinded() ? "report" : "unblind",
-                               report::quoted_for_shell(folder.path())));
+  report::say_next(command_for(folder.unblinded() ? "report" : "unblind", folder.path()));
 }
 
 int run(Typed typed) {
@@ -127,7 +124,7 @@ int run(Typed typed) {
   runtime::Stop stop;
   if (!typed.plan.empty()) return conduct_planned(folder, *index, typed.plan, typed.lab, stop);
   const int status = conduct(folder, *index, typed.lab, stop);
-  report::say_next("stillhand experiment status " + typed.folder.string());
+  report::say_next(command_for("status", typed.folder));
   return status;
 }
 
@@ -137,7 +134,7 @@ int show_status(const Typed& typed) {
   std::fputs(overview.table.c_str(), stdout);
   for (const std::string& finding : overview.findings) runtime::remark(finding);
   if (overview.findings.empty() && next_participant(folder)) {
-    report::say_next("stillhand experiment run " + report::quoted_for_shell(typed.folder));
+    report::say_next(command_for("run", typed.folder));
   } else if (overview.findings.empty()) {
     say_after(folder);
   }
@@ -236,7 +233,7 @@ void add_rest(command_line::Command& verb, const std::shared_ptr<Typed>& typed, 
         Folder(typed->folder), {typed->reason, typed->participant, typed->incomplete}, std::cin);
     std::fputs(text.c_str(), stdout);
     if (typed->participant.empty()) {
-      report::say_next("stillhand experiment report " + typed->folder.string());
+      report::say_next(command_for("report", typed->folder));
     }
   });
 }

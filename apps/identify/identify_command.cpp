@@ -13,7 +13,6 @@
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/identification/model_file.hpp"
 #include "services/files/settings/check_name.hpp"

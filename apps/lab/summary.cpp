@@ -11,6 +11,7 @@
 #include "apps/lab/session_figure.hpp"
 #include "apps/lab/session_page.hpp"
 #include "apps/lab/summary_json.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/text/text.hpp"
 #include "services/core/device_rig/parts.hpp"
 #include "services/files/identification/model_file.hpp"
@@ -166,9 +167,9 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   for (const auto& [topic, count] : result.lost_ticks) lost += count;
   std::printf("lost ticks on the 1 kHz topics: %lld\n", static_cast<long long>(lost));
   std::printf("results in %s\n", options.out.string().c_str());
-  report::say_next("open " + (options.out / kSessionPage).string());
+  report::say_open(options.out / kSessionPage);
   if (!result.disturbances.empty()) {
-    report::say_next("stillhand misses " + (options.out / "session.mcap").string() +
+    report::say_next("stillhand misses " + report::quoted_for_shell(options.out / "session.mcap") +
                      " --picture late.svg");
   }
   const std::vector<std::string> uncounted = uncounted_lines(outcomes);

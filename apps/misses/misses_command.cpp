@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/clock_line.hpp"
 #include "apps/libraries/session/misses.hpp"
 #include "apps/libraries/session/misses_json.hpp"
@@ -112,7 +112,8 @@ int run(const Arguments& arguments) {
   }
   files.publish();
   if (!misses.empty()) {
-    report::say_next("stillhand dashboard --recording " + arguments.recording +
+    report::say_next("stillhand dashboard --recording " +
+                     report::quoted_for_shell(arguments.recording) +
                      ", where N jumps to the next one");
   }
   if (!session.damage.empty()) {

@@ -17,7 +17,6 @@
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/protocol.hpp"
 #include "apps/plan_run/plan_results.hpp"
 #include "services/core/contract/config_error.hpp"

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "apps/libraries/measurement/read_options.hpp"
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/predict/judgement.hpp"
 #include "apps/predict/predict.hpp"
 #include "services/core/contract/config_error.hpp"

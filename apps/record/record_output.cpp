@@ -8,7 +8,6 @@
 #include <map>
 
 #include "apps/libraries/report/command_line.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "idl/topics.hpp"
 #include "services/system/process/clock.hpp"
 

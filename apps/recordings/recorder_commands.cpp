@@ -11,7 +11,6 @@
 
 #include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/libraries/session/lateness_channels.hpp"
 #include "apps/recordings/export.hpp"
 #include "apps/recordings/info.hpp"

@@ -13,7 +13,6 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/result_files.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/explain/calibrate.hpp"
 #include "apps/study/explain/explanation_output.hpp"
 #include "apps/study/mitigations/campaign_command.hpp"

@@ -8,10 +8,10 @@
 #include <cstdio>
 #include <utility>
 
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/recorded/find_sessions.hpp"
 #include "apps/study/recorded_subjects.hpp"
 #include "apps/study/subjects/study.hpp"

@@ -10,7 +10,6 @@
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
 #include "apps/libraries/report/staged_folder.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/vehicle/region.hpp"
 #include "apps/vehicle/region_output.hpp"
 #include "services/files/settings/check_name.hpp"

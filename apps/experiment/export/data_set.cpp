@@ -147,9 +147,8 @@ const char* name_of(TrialKind kind) {
 
 DataSet data_set_of(const Folder& folder, const OnSession& on_session) {
   if (!folder.unblinded()) {
-    throw ConfigError(
-        folder.path().string(), "an experiment that is still blinded",
-        "`stillhand experiment unblind " + folder.path().string() + " --reason TEXT` first");
+    throw ConfigError(folder.path().string(), "an experiment that is still blinded",
+                      "`" + command_for("unblind", folder.path()) + "` first");
   }
   folder.refuse_findings();
   DataSet out;

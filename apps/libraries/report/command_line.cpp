@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/libraries/report/command_line.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <fstream>
 #include <string_view>
 
@@ -27,6 +30,17 @@ std::string command_line() {
   std::getline(file, word, '\0');  // the program's own name
   while (std::getline(file, word, '\0')) text += " " + quoted_for_shell(word);
   return text;
+}
+
+void say_next(const std::string& step) {
+  if (isatty(STDOUT_FILENO) == 1) fmt::print("next: {}\n", step);
+}
+
+void say_open(const std::filesystem::path& file) { say_next("open " + quoted_for_shell(file)); }
+
+void say_report(const std::filesystem::path& folder) {
+  fmt::print("report in {}\n", folder.string());
+  say_open(folder / "report.html");
 }
 
 }  // namespace stillhand::report

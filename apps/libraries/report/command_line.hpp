@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace stillhand::report {
@@ -13,5 +14,12 @@ std::string command_line();
 std::string quoted_for_shell(const std::string& word);
 /// The same, always in single quotes.
 std::string in_shell_quotes(std::string word);
+
+/// What a person may type or open next, in a line of its own, on a terminal alone.
+void say_next(const std::string& step);
+/// The same, to open a page or picture.
+void say_open(const std::filesystem::path& file);
+/// "report in FOLDER", and next to open its page.
+void say_report(const std::filesystem::path& folder);
 
 }  // namespace stillhand::report

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/mitigations/campaign_command.hpp"
 
+#include "apps/libraries/report/command_line.hpp"
 #include "apps/libraries/report/plot/draw.hpp"
 #include "apps/libraries/report/progress.hpp"
-#include "apps/libraries/report/text/text.hpp"
 #include "apps/study/mitigations/campaign_output.hpp"
 #include "services/system/process/stop.hpp"
 

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "apps/libraries/experiment/file/experiment_file.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/recording/experiment_record.hpp"
 #include "services/core/recording/mcap/mcap_reader.hpp"
@@ -34,7 +35,7 @@ std::vector<fs::path> session_folders(const fs::path& folder) {
   // The tables name the conditions (apps/experiment/README.md, "The folder").
   if (fs::exists(folder / "experiment.yaml") && !fs::exists(folder / "assignment.json")) {
     throw ConfigError(folder.string(), "an experiment that is still blinded",
-                      "`stillhand experiment unblind " + folder.string() + "` first");
+                      "`" + experiment::command_for("unblind", folder) + "` first");
   }
   std::vector<fs::path> out;
   for (const fs::path& participant : folders_in(folder / "participants")) {

@@ -207,6 +207,11 @@ TEST(ExperimentFileTest, EachParticipantHasLabelsOfItsOwn) {
   EXPECT_GT(all.size(), 1u);
 }
 
+TEST(ExperimentFileTest, ACommandCanBeTypedIntoAShell) {
+  EXPECT_EQ(command_for("run", "my study's"), "stillhand experiment run 'my study'\\''s'");
+  EXPECT_EQ(command_for("unblind", "study1"), "stillhand experiment unblind study1 --reason TEXT");
+}
+
 // A mitigation's name may hold the dash that separates two conditions.
 TEST(ExperimentFileTest, APlannedComparisonNamesTwoOfTheConditions) {
   const std::vector<std::string> conditions{"B", "low-pass", "damping+force", "lms-signal"};

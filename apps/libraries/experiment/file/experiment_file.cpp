@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/libraries/report/command_line.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/files/settings/placed_error.hpp"
@@ -113,6 +114,11 @@ std::string yaml_of(const std::vector<Question>& questions) {
 }
 
 }  // namespace
+
+std::string command_for(std::string_view verb, const std::filesystem::path& folder) {
+  return fmt::format("stillhand experiment {} {}{}", verb, report::quoted_for_shell(folder),
+                     verb == "unblind" ? " --reason TEXT" : "");
+}
 
 std::string yaml_of(const Design& design) {
   CommentedYaml plain;

@@ -3,12 +3,17 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "apps/libraries/experiment/core/design.hpp"
 
 namespace stillhand::experiment {
 
 inline constexpr const char* kDesignFile = "experiment.yaml";
+
+/// "stillhand experiment VERB FOLDER" as a person may type it in a shell, with what the verb
+/// requires.
+std::string command_for(std::string_view verb, const std::filesystem::path& folder);
 
 /// experiment.yaml with a comment above every key; read_design() gives the same design again.
 std::string yaml_of(const Design& design);

@@ -2,7 +2,6 @@
 #include "apps/libraries/report/text/text.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <charconv>
@@ -193,15 +192,6 @@ double text_width_px(std::string_view text, double font_size_px) {
     }
   }
   return width_em * font_size_px;
-}
-
-void say_next(const std::string& step) {
-  if (isatty(STDOUT_FILENO) == 1) fmt::print("next: {}\n", step);
-}
-
-void say_report(const std::filesystem::path& folder) {
-  fmt::print("report in {}\n", folder.string());
-  say_next("open " + (folder / "report.html").string());
 }
 
 }  // namespace stillhand::report

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -59,10 +58,5 @@ std::string power_of_ten(int factor, int exponent);
 
 /// Upper estimate of the width of a text in DejaVu Sans [px].  Other sans-serif fonts are narrower.
 double text_width_px(std::string_view text, double font_size_px);
-
-/// What a person may type or open next, in a line of its own, on a terminal alone.
-void say_next(const std::string& step);
-/// "report in FOLDER", and next to open its page.
-void say_report(const std::filesystem::path& folder);
 
 }  // namespace stillhand::report
