@@ -52,10 +52,9 @@ int refused(const std::filesystem::filesystem_error& error) {
   const std::error_code& why = error.code();
   const bool of_machine = why == std::errc::io_error || why == std::errc::no_space_on_device ||
                           why == std::errc::too_many_files_open;
-  runtime::remark(
-      stillhand::ConfigError(error.path1().string(), why.message(),
-                             "a file or folder that this user can reach, on a sound disk with room")
-          .what());
+  runtime::remark(stillhand::ConfigError(error.path1().string(), why.message(),
+                                         "a file or folder that this user can reach")
+                      .what());
   return of_machine ? 1 : 2;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/binomial.hpp>
-#include <limits>
 #include <string>
 
 #include "services/core/contract/config_error.hpp"
@@ -48,9 +47,10 @@ MedianInterval median_interval(std::vector<double> values, double confidence) {
   // Eq. ST-20: the largest k whose tail is small enough.
   std::size_t k = 0;
   while (cdf(below, static_cast<double>(k)) <= (1.0 - confidence) / 2.0) ++k;
-  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
-  out.low = k == 0 ? -kNoEnd : values[k - 1];
-  out.high = k == 0 ? kNoEnd : values[values.size() - k];
+  if (k > 0) {
+    out.low = values[k - 1];
+    out.high = values[values.size() - k];
+  }
   return out;
 }
 

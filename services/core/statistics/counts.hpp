@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace stillhand::statistics {
@@ -20,8 +21,9 @@ ShareInterval share_interval(std::size_t count, std::size_t all, double confiden
 
 struct MedianInterval {
   double median = 0.0;
-  double low = 0.0;  ///< -infinity where the sample is too small for the confidence
-  double high = 0.0;
+  // Without ends where the sample is too small for the confidence.
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
 };
 
 /// Median (ST-2) and its distribution-free interval between two order statistics, README Eq. ST-20.

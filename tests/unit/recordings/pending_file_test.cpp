@@ -3,9 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
+#include "tests/support/refusal.hpp"
 #include "tests/unit/recordings/sample_recording.hpp"
 
 namespace stillhand::recordings::pending_file_test {
@@ -73,13 +75,19 @@ TEST_F(PendingFileTest, ADeviceAFolderAndALinkToOneAreRefused) {
   EXPECT_EQ(file_count(), 2u);
 }
 
-TEST_F(PendingFileTest, AFileThatWasNeverWrittenOrHasNoFolderIsARunTimeError) {
+TEST_F(PendingFileTest, AFileThatWasNeverWrittenOrLostItsFolderIsARunTimeError) {
   PendingFile sut(path("a.mat"));
   EXPECT_THAT([&] { sut.publish(); },
               testing::ThrowsMessage<std::runtime_error>(HasSubstr("a.mat")));
+  std::filesystem::create_directory(path("none"));
   PendingFile lost(path("none/a.mat"));
+  std::filesystem::remove(path("none"));
   EXPECT_THAT([&] { lost.publish_new(); },
               testing::ThrowsMessage<std::runtime_error>(HasSubstr("none/a.mat")));
+  EXPECT_EQ(
+      support::refusal([&] { PendingFile(path("none/a.mat")); }),
+      path("none/a.mat") +
+          ": got a name in a folder that does not exist, want a name in a folder that exists");
   EXPECT_EQ(file_count(), 0u);
 }
 
