@@ -33,7 +33,7 @@ struct AnnouncedWriter {
 /// depends on.
 /// @param object_bytes  [B] of its own object, then of those that it depends on
 inline bool is_bounded(std::span<const std::uint32_t> object_bytes) noexcept {
-  constexpr std::uint64_t kMostBytes = 64 * 1024;
+  constexpr std::uint64_t kMostBytes = 65'536;
   constexpr std::size_t kMostTypes = 1 + 256;
   if (object_bytes.size() > kMostTypes) return false;
   std::uint64_t bytes = 0;

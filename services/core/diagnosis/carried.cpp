@@ -292,6 +292,6 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
   return carried;
 }
 
-CarriedModel carried_as_it_is(Model model) { return {model, model, {}, {}, {}, {}}; }
+CarriedModel carried_as_it_is(Model model) { return {model, std::move(model), {}, {}, {}, {}}; }
 
 }  // namespace stillhand::diagnosis

@@ -106,11 +106,12 @@ Limit limit_of(const std::vector<double>& y, const std::vector<double>& p) {
   Limit best;
   double gain = py / pp;
   const double without = yy - gain * py;
-  for (int step = 0; step < kGains; ++step, gain *= kGainStep) {
+  const std::size_t half = n / 2;
+  for (int step = 0; step < kGains; ++step) {
     // The middle half of the rows lies within both limits; so does its level.
     double level = 0.0;
-    for (std::size_t k = n / 4; k < n / 4 + n / 2; ++k) {
-      level += (y[order[k]] - gain * p[order[k]]) / static_cast<double>(n / 2);
+    for (std::size_t k = n / 4; k < n / 4 + half; ++k) {
+      level += (y[order[k]] - gain * p[order[k]]) / static_cast<double>(half);
     }
     double error = 0.0;
     std::vector<double> z[2], of_y[2];
@@ -126,9 +127,11 @@ Limit limit_of(const std::vector<double>& y, const std::vector<double>& p) {
     const LimitEnd low = limit_end_of(z[0], of_y[0], -1.0);
     const LimitEnd high = limit_end_of(z[1], of_y[1], 1.0);
     const double ratio = (error - low.saved - high.saved) / without;
-    if (ratio >= best.error_ratio) continue;
-    best = {low.limit, high.limit,
-            static_cast<double>(low.rows + high.rows) / static_cast<double>(n), ratio};
+    if (ratio < best.error_ratio) {
+      best = {low.limit, high.limit,
+              static_cast<double>(low.rows + high.rows) / static_cast<double>(n), ratio};
+    }
+    gain *= kGainStep;
   }
   return best;
 }

@@ -82,7 +82,7 @@ ChangeChart::Step ChangeChart::step(const Eigen::Vector2d& x) noexcept {
   cusum_ = left > 0.0 ? Eigen::Vector2d(reached * (left / (left + kAllowance)))
                       : Eigen::Vector2d::Zero().eval();
   if (left <= threshold_) return {};
-  const Step out = dated();
+  Step out = dated();
   restart();
   return out;
 }

@@ -83,8 +83,10 @@ class Jobs {
 // kernel when it is freed, and the next one is filled with zeros, page by page.
 void keep_freed_memory() {
   constexpr int kLargestKept_bytes = 32 << 20;  // more, glibc does not accept
+  // NOLINTBEGIN(concurrency-mt-unsafe): before the jobs' threads
   static const bool kKept = mallopt(M_MMAP_THRESHOLD, kLargestKept_bytes) != 0 &&
                             mallopt(M_TRIM_THRESHOLD, 8 * kLargestKept_bytes) != 0;
+  // NOLINTEND(concurrency-mt-unsafe)
   static_cast<void>(kKept);
 }
 

@@ -134,8 +134,8 @@ DetectionLines detection_lines(const RepeatedResidual& repeated,
   const Periodicity& used = repeated.used;
   result.periodicity = used;
   result.repeats = repeated.repeats;
-  std::size_t divisor = 0;
-  for (const std::size_t h : excited_lines) divisor = std::gcd(divisor, h);
+  const std::size_t divisor = std::accumulate(excited_lines.begin(), excited_lines.end(),
+                                              std::size_t{0}, std::gcd<std::size_t, std::size_t>);
   const std::size_t spacing = divisor * used.periods;
   const double samples = static_cast<double>(used.end() - used.first);
   result.fundamental_hz = static_cast<double>(spacing) * signals.rate_hz() / samples;

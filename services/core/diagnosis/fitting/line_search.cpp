@@ -39,7 +39,7 @@ std::vector<Line> strongest_lines(const std::vector<double>& axis,
   const double width = kStepsPerLine * range / static_cast<double>(bins - 1);
   std::vector<double> gathered(bins, 0.0);
   for (std::size_t n = 0; n < axis.size(); ++n) {
-    gathered[static_cast<std::size_t>((axis[n] - low) / width + 0.5)] += residual[n];
+    gathered[static_cast<std::size_t>(std::lround((axis[n] - low) / width))] += residual[n];
   }
   std::vector<std::complex<double>> spectrum;
   Eigen::FFT<double> transform;

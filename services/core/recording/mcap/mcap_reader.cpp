@@ -105,7 +105,7 @@ void McapReader::define(Channel channel, std::uint64_t offset) {
 
 Status McapReader::verify(const std::function<void(const MessageView&)>& take) {
   if (!status_.ok()) return status_;
-  const Status walked = for_each_message({}, [&take](const MessageView& message) {
+  Status walked = for_each_message({}, [&take](const MessageView& message) {
     if (take) take(message);
     return true;
   });

@@ -216,7 +216,7 @@ bool McapReader::may_follow(std::uint64_t offset) {
 
 // First offset in [offset, end) at which a chunk begins, or the size of the file.
 std::uint64_t McapReader::next_chunk(std::uint64_t offset, std::uint64_t end) {
-  constexpr std::uint64_t kBlockBytes = 64 * 1024;
+  constexpr std::uint64_t kBlockBytes = 65'536;
   constexpr std::uint64_t kLookBytes = kRecordHeadBytes + kChunkHeadBytes;
   const std::uint64_t size = source_.size();
   while (offset < end) {

@@ -8,7 +8,7 @@ namespace {
 
 // Large enough to avoid a system call for each 100-byte message of a scan, small compared with a
 // chunk.
-constexpr std::uint64_t kWindowBytes = 64 * 1024;
+constexpr std::uint64_t kWindowBytes = 65'536;
 
 }  // namespace
 
