@@ -207,8 +207,11 @@ std::string MoteusEmulator::answer(std::string line, std::int64_t now_ns) {
   std::string hex;
   words >> can >> send >> number >> hex;
   if (can != "can" || send != "send" || hex.empty()) {
-    return ended(line.starts_with("can on") ? "OK" : "ERR unknown command");
+    const bool on = line.starts_with("can on");
+    bus_on_ = bus_on_ || on;
+    return ended(on ? "OK" : "ERR unknown command");
   }
+  if (!bus_on_) return ended("ERR bus off");
   const auto identifier = static_cast<unsigned>(std::strtoul(number.c_str(), nullptr, 16));
   std::vector<std::uint8_t> payload;
   for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {

@@ -63,6 +63,8 @@ class MoteusEmulator {
   void forget(std::uint32_t address) { unknown_ = address; }
   /// Another drive in its place.
   void be(std::uint32_t serial) { serial_ = serial; }
+  /// An adapter that lost its power: "can on" has to come again.
+  void turn_bus_off() { bus_on_ = false; }
   /// The encoder gives no position.
   void lose_position(bool lost) { lost_ = lost; }
 
@@ -77,6 +79,7 @@ class MoteusEmulator {
   [[nodiscard]] double setting(const char* name) const;
 
   bool uart_;
+  bool bus_on_ = true;
   bool checked_ = false;  ///< a command came with a checksum: from now on all need one
   std::string line_;
   std::map<std::string, std::string> settings_;

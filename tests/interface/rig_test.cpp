@@ -66,11 +66,12 @@ class RigProcessTest : public testing::Test {
   }
 
   /// Trial `number` covers every tick; -1: none is announced.
-  void announce(std::int32_t number) {
+  void announce(std::int32_t number, Tick start_tick = 0) {
     stillhand_msgs::TrialControl control;
     control.session(stillhand_msgs::SESSION_RUNNING);
     control.trial(number);
     control.phase(number < 0 ? stillhand_msgs::PHASE_IDLE : stillhand_msgs::PHASE_TRACKING);
+    control.start_tick(start_tick);
     control.duration_ticks(number < 0 ? 0 : 3'600'000);
     control_.write(control);
   }
@@ -217,6 +218,15 @@ TEST_F(RigProcessTest, WithoutATrialThePlatformHoldsWhateverMotionCommands) {
   announce(-1);
   ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
   expect_rest();
+}
+
+TEST_F(RigProcessTest, ATrialThatHasNotBegunIsNoReasonToFollowAMotion) {
+  expect_motion();
+  announce(2, tick_ + 1'000'000);
+  expect_rest();
+  EXPECT_NE(command_tick_, kHeld) << "the trial is announced";
+  announce(2);
+  EXPECT_TRUE(eventually([this] { return speed_m_s_ > kMoves_m_s; }));
 }
 
 TEST_F(RigProcessTest, MotionThatFallsSilentIsNotFollowedAgainInTheTrial) {

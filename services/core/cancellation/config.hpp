@@ -16,7 +16,7 @@ struct Config {
   double gain = 1.0;
   double max_model_gain_n_s2_m = 60.0;
   double max_path_force_n = 25.0;
-  double max_acceleration_m_s2 = 60.0;
+  double max_acceleration_m_s2 = 16.0;
   std::int64_t fade_ticks = 250;
   std::int64_t max_hold_ticks = 50;
 
@@ -30,7 +30,7 @@ struct Config {
     visit("max_path_force_n", self.max_path_force_n, Range{0.0, 60.0},
           "[N] most that a model may ask for from the stick at its full scale, or from a tone");
     visit("max_acceleration_m_s2", self.max_acceleration_m_s2, Range{1.0, 500.0},
-          "[m/s^2] a larger magnitude is no platform motion (paper III-C: peak 7.5) but a fault");
+          "[m/s^2] a larger magnitude is a fault: above a platform's limit, below a sensor's end");
     visit("fade_ticks", self.fade_ticks, Range{50.0, 5000.0},
           "[ticks] fade from zero or from the model before, after the new one has settled");
     visit(

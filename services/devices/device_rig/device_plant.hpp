@@ -100,11 +100,12 @@ class DevicePlant final : public rig::Plant {
   rig::Motor motor_;  ///< age, permission and envelope of the force: those of the simulated rig
   PlatformDrive seat_drive_;
   Arming arming_;
-  std::unique_ptr<DriveLink> drive_;  ///< null: no part is the drive's
-  std::unique_ptr<PlatformLink> platform_;
   std::unique_ptr<IioLink> accelerometer_;
   std::optional<Mount> mount_;  ///< of an accelerometer of three axes
   std::unique_ptr<IioLink> load_cell_;
+  // Last of the links, so first to go: the end of another one may wait for its network.
+  std::unique_ptr<DriveLink> drive_;  ///< null: no part is the drive's
+  std::unique_ptr<PlatformLink> platform_;
 
   Trial trial_;
   Tick tick_ = 0;

@@ -100,6 +100,7 @@ void DriveLink::open_again() {
   unchecked_ = true;
   try {
     port_ = port_of(config_);
+    port_->write(protocol_->greeting());
   } catch (const std::exception&) {
     // Not there yet: the next turn tries again.  Nothing rings meanwhile as often as the loop.
     runtime::sleep_until_ns(runtime::monotonic_ns() + kWait_ms * kMs_ns);

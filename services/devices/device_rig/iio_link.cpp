@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "services/core/contract/config_error.hpp"
 #include "services/core/contract/units.hpp"
 #include "services/core/device_rig/iio_value.hpp"
 #include "services/system/process/clock.hpp"
@@ -34,13 +33,6 @@ std::string in_words(const IioSample& sample) {
 
 IioLink::IioLink(const IioConfig& config, std::vector<std::string> channels, double factor)
     : factor_(factor), device_(config.uri, config.device, std::move(channels), kTick_hz) {
-  // Slower than the loop, and a sample would count twice as a new one.
-  if (device_.rate_hz() > 0.0 && device_.rate_hz() < kTick_hz) {
-    throw ConfigError("sampling_frequency of IIO device " + config.device,
-                      std::to_string(device_.rate_hz()) + " Hz",
-                      "at least 1000 Hz; `iio_attr -u " + config.uri + " -d " + config.device +
-                          " sampling_frequency` sets it");
-  }
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 

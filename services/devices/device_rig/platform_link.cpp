@@ -23,6 +23,7 @@ PlatformLink::PlatformLink(const PlatformLinkConfig& config, Parts::Platform pro
     : lock_("platform-" + config.address + ":" + std::to_string(config.port),
             "platform at " + config.address + ", port " + std::to_string(config.port)),
       token_(new_token()),
+      valid_ns_(config.valid_ms * 1'000'000),
       socket_(config.address, static_cast<std::uint16_t>(config.port),
               static_cast<std::uint16_t>(config.local_port)),
       exchange_(protocol, token_, static_cast<std::uint32_t>(config.valid_ms), config.heave_m),
@@ -34,7 +35,7 @@ PlatformLink::~PlatformLink() {
 }
 
 void PlatformLink::demand(const SetPoint& set_point) noexcept {
-  demands_.store({++demand_number_, set_point});
+  demands_.store({++demand_number_, runtime::monotonic_ns(), set_point});
   bell_.ring();
 }
 
@@ -46,7 +47,8 @@ void PlatformLink::work(const std::stop_token& stop) noexcept {
     const Demand& demand = demands_.load();
     if (demand.number == sent_number_) continue;
     sent_number_ = demand.number;
-    send(demand.set_point);
+    // After a process that stood still: the platform has braked by itself meanwhile.
+    if (runtime::monotonic_ns() - demand.at_ns < valid_ns_) send(demand.set_point);
   }
   if (sent_number_ == 0) return;
   SetPoint last = demands_.load().set_point;

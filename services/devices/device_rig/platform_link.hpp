@@ -34,6 +34,7 @@ class PlatformLink {
  private:
   struct Demand {
     std::uint64_t number = 0;
+    std::int64_t at_ns = 0;
     SetPoint set_point;
   };
   void work(const std::stop_token& stop) noexcept;
@@ -42,6 +43,7 @@ class PlatformLink {
 
   runtime::HostLock lock_;
   std::uint32_t token_;
+  std::int64_t valid_ns_;
   runtime::UdpSocket socket_;
   runtime::Bell bell_;
   runtime::LatestValue<Demand> demands_;

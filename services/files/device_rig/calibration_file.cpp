@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "services/core/contract/config_error.hpp"
+#include "services/core/device_rig/parts.hpp"
 #include "services/files/settings/load.hpp"
 
 namespace stillhand::device_rig {
@@ -114,6 +115,15 @@ void check_calibration(CalibratedSignal signal, const CalibrationRecord& record,
         fmt::format("sensing.yaml: {}", number.key), fmt::format("{}", number.in_use),
         fmt::format("{}, as calibrated on {}: {}", number.calibrated, record.date, mends(name)));
   }
+}
+
+void check_counts(const DevicesConfig& devices, const sensing::Config& sensing) {
+  const auto counts = static_cast<double>(devices.drive.counts_per_rev);
+  if (parts_of(devices).angle != Parts::Source::kDrive) return;
+  if (counts == sensing.encoder_counts_per_rev) return;
+  throw ConfigError(
+      "devices.drive.counts_per_rev", fmt::format("{}", counts),
+      fmt::format("{}, encoder_counts_per_rev of sensing.yaml", sensing.encoder_counts_per_rev));
 }
 
 void check_platform(const PlatformRecord& record, const std::string& device,

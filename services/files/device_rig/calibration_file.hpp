@@ -10,6 +10,7 @@
 
 #include "services/core/contract/config_field.hpp"
 #include "services/core/device_rig/calibration_fit.hpp"
+#include "services/core/device_rig/devices_config.hpp"
 #include "services/core/sensing/conditioner.hpp"
 #include "services/files/device_rig/calibration_records.hpp"
 
@@ -112,7 +113,11 @@ void check_calibration(CalibratedSignal signal, const CalibrationRecord& record,
                        const std::string& device, const sensing::Config& sensing,
                        std::int64_t max_age_days, const std::string& today);
 
-/// The same for a platform's lag and bandwidth.  @param device  empty: it is simulated
+/// The drive's angle goes out in the counts of which sensing makes it again.
+/// @throws ConfigError for two numbers of counts a revolution
+void check_counts(const DevicesConfig& devices, const sensing::Config& sensing);
+
+/// The rule of Eq. DR-16 for a platform's lag and bandwidth.  @param device  empty: it is simulated
 void check_platform(const PlatformRecord& record, const std::string& device,
                     std::int64_t max_age_days, const std::string& today);
 

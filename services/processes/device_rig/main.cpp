@@ -17,9 +17,10 @@ void refuse_uncalibrated(const stillhand::device_rig::DevicePlant& plant,
                          const stillhand::device_rig::DevicesConfig& devices,
                          const std::filesystem::path& folder) {
   using namespace stillhand;
+  const auto sensing = settings::load<sensing::Config>(folder / "sensing.yaml", "sensing");
+  device_rig::check_counts(devices, sensing);
   if (devices.calibration.max_age_days == 0) return;
   const auto calibrations = device_rig::load_calibrations(folder / "calibration.yaml");
-  const auto sensing = settings::load<sensing::Config>(folder / "sensing.yaml", "sensing");
   const std::int64_t days = devices.calibration.max_age_days;
   const std::string today = device_rig::today();
   for (const device_rig::CalibratedSignal signal : device_rig::kCalibratedSignals) {

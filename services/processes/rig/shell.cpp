@@ -115,8 +115,11 @@ void Shell::tick_once(Tick tick, std::int64_t due_ns) {
   plant_.begin(trial, tick);
   const auto* command = command_for(tick);
   const MotionLeave leave = leave_for(announced, tick, command);
-  // Without leave the platform brakes and holds.
-  if (leave == MotionLeave::kHold) command = nullptr;
+  // Without leave the platform brakes and holds.  Until the trial begins it comes to a command at
+  // rest alone: a motion that still goes on is not its own.
+  const bool early = leave == MotionLeave::kEngage && command != nullptr &&
+                     !(std::abs(command->velocity_m_s()) < kRest_m_s);
+  if (leave == MotionLeave::kHold || early) command = nullptr;
   const auto& newest_force = volition_.load();
   const auto* volition = newest_force.tick() >= 0 ? &newest_force : nullptr;
   const bool pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
@@ -134,15 +137,16 @@ void Shell::tick_once(Tick tick, std::int64_t due_ns) {
     motor = take_motor(trial, tick, input);
     plant_.drive(input, output);
   }
-  at_rest_ =
-      output.truth.motor_force_n == 0.0 && std::abs(output.truth.platform_velocity_m_s) < kRest_m_s;
-  report_interlock(trial, tick, output.truth.motor_force_n);
-
+  // Before anything else loads a message: that may give the place of this one away.
   UsedTicks used;
   if (command != nullptr) used.command = command->tick();
   if (leave == MotionLeave::kHold) used.command = UsedTicks::kHeld;
   if (motor != nullptr) used.motor = motor->tick();
   if (volition != nullptr) used.volition = volition->tick();
+  at_rest_ =
+      output.truth.motor_force_n == 0.0 && std::abs(output.truth.platform_velocity_m_s) < kRest_m_s;
+  report_interlock(trial, tick, output.truth.motor_force_n);
+
   auto truth = to_idl(output, tick, input, used);
   truth_.write(truth);
   if (const char* notice = plant_.notice()) {

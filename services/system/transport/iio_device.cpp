@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <system_error>
@@ -133,7 +134,18 @@ void IioDevice::open() {
     formats_.push_back(format_of(channels_.back()));
   }
   if (iio_device_attr_read_double(device_, "sampling_frequency", &rate_hz_) < 0) rate_hz_ = 0.0;
-  serial_ = serial_of(context_, device_);
+  // Slower than it is read, and a sample would count twice as a new one.
+  if (rate_hz_ > 0.0 && rate_hz_ < reads_hz_) {
+    throw ConfigError("sampling_frequency of IIO device " + name_, std::to_string(rate_hz_) + " Hz",
+                      "at least " + std::to_string(std::lround(reads_hz_)) + " Hz; `iio_attr -u " +
+                          uri_ + " -d " + name_ + " sampling_frequency` sets it");
+  }
+  const std::string serial = serial_of(context_, device_);
+  if (!serial_.empty() && serial != serial_) {
+    throw ConfigError("IIO device " + name_, "serial number " + serial,
+                      serial_ + ", of the one that was opened first");
+  }
+  serial_ = serial;
   block_ = static_cast<std::size_t>(std::max(1.0, rate_hz_ / reads_hz_));
   make_buffer();
   if (buffer_ == nullptr) {

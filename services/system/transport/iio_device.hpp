@@ -35,7 +35,7 @@ class IioDevice {
   /// @param reads_hz  a device that samples more often is read in blocks: behind an iiod each read
   ///                  is a round trip
   /// @throws ConfigError for a context, a device or a channel that is not there, with those that
-  /// are
+  /// are; for a device that samples less often
   IioDevice(std::string uri, std::string device, std::vector<std::string> channels,
             double reads_hz);
   ~IioDevice();
@@ -45,7 +45,8 @@ class IioDevice {
   /// Waits for the next block of samples, 1 s at most where the context keeps its time-out; a
   /// pulled cable may hold it for ever, until cancel().
   /// @param numbers  those of the converter in the newest sample, one a channel
-  /// @returns false if none came: all is closed then, and the next call opens it again
+  /// @returns false if none came: all is closed then, and the next call opens it again.  Not one of
+  ///          another serial number, or one that became slower.
   bool read(std::span<std::int64_t> numbers);
   /// Samples that a read takes.
   [[nodiscard]] std::size_t block() const noexcept { return block_; }
@@ -76,7 +77,7 @@ class IioDevice {
   double reads_hz_;
   double rate_hz_ = 0.0;
   std::size_t block_ = 1;
-  std::string serial_ = "unknown";
+  std::string serial_;
   iio_context* context_ = nullptr;
   iio_device* device_ = nullptr;
   std::vector<iio_channel*> channels_;

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 
 #include "services/core/contract/config_error.hpp"
 
@@ -30,7 +30,7 @@ void make_raw(int descriptor, const std::string& path) {
       1;  // nothing there reads as EAGAIN, and 0 means that the other side is gone
   settings.c_cc[VTIME] = 0;
   if (tcsetattr(descriptor, TCSANOW, &settings) != 0)
-    refuse(path, std::strerror(errno), "a serial port");
+    refuse(path, std::generic_category().message(errno), "a serial port");
 }
 
 }  // namespace
@@ -38,7 +38,8 @@ void make_raw(int descriptor, const std::string& path) {
 SerialPort::SerialPort(const std::string& path) {
   descriptor_ = open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor_ < 0) {
-    refuse(path, std::strerror(errno), "a port that this user may read and write");
+    refuse(path, std::generic_category().message(errno),
+           "a port that this user may read and write");
   }
   try {
     // Two processes that command one drive would be two sources of force.

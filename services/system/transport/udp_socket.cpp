@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 
 #include "services/core/contract/config_error.hpp"
 
@@ -36,7 +36,7 @@ UdpSocket::UdpSocket(const std::string& address, std::uint16_t port, std::uint16
   }
   descriptor_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor_ < 0 || !joins(descriptor_, place(local_port), there)) {
-    const std::string why = std::strerror(errno);
+    const std::string why = std::generic_category().message(errno);
     if (descriptor_ >= 0) close(descriptor_);
     throw ConfigError("UDP port " + std::to_string(local_port) + " to " + address, why,
                       "a port that is free");

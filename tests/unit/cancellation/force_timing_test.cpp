@@ -174,10 +174,10 @@ TEST(ForceTimingTest, ChannelsEndAtTheirFullScaleAndAYAtItsBound) {
   for (Tick n = 0; n < 300; ++n) sut.step(n, at(0.0), kGood, false);
   Tick n = 300;
   for (const double sign : {-1.0, 1.0}) {
-    const auto most = sut.step(n++, {0.0, sign * 60.0, 0.0, 0.0, 0.0, 0.0}, kGood, false);
-    EXPECT_DOUBLE_EQ(most.predicted_n, sign * 60.0);
+    const auto most = sut.step(n++, {0.0, sign * 16.0, 0.0, 0.0, 0.0, 0.0}, kGood, false);
+    EXPECT_DOUBLE_EQ(most.predicted_n, sign * 16.0);
     EXPECT_TRUE(most.sound);
-    const auto more = sut.step(n++, {0.0, sign * 60.001, 0.0, 0.0, 0.0, 0.0}, kGood, false);
+    const auto more = sut.step(n++, {0.0, sign * 16.001, 0.0, 0.0, 0.0, 0.0}, kGood, false);
     EXPECT_EQ(more.flags, Flags{kInputInvalid});
     const ChannelSample others{sign * 20.0, 0.0, 0.0, 0.0, sign * 7.0, 0.0};
     EXPECT_DOUBLE_EQ(sut.step(n++, others, kGood, false).predicted_n, sign * (1.667 + 6.0));

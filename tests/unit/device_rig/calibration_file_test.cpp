@@ -70,6 +70,18 @@ TEST_F(CalibrationFileTest, ASimulatedSignalAndAnAgeOfZeroAskForNone) {
   EXPECT_EQ(refusal(), "accepted");
 }
 
+TEST_F(CalibrationFileTest, TheAngleKeepsItsCountsOnTheWayToSensing) {
+  DevicesConfig devices;
+  devices.drive.counts_per_rev = 16'384;
+  EXPECT_NO_THROW(check_counts(devices, sensing_)) << "the angle is simulated";
+  devices.signals.angle = "drive";
+  EXPECT_EQ(support::refusal([&] { check_counts(devices, sensing_); }),
+            "devices.drive.counts_per_rev: got 16384, want 4096, encoder_counts_per_rev of "
+            "sensing.yaml");
+  devices.drive.counts_per_rev = 4096;
+  EXPECT_NO_THROW(check_counts(devices, sensing_));
+}
+
 TEST_F(CalibrationFileTest, APlatformNeedsItsIdentificationAndAPushItsCheck) {
   const auto platform = [](const PlatformRecord& record, const char* device,
                            std::int64_t days = 90) {

@@ -134,7 +134,11 @@ TEST_F(DriveLinkTest, AfterTheCableWasOutTheDriveIsCheckedAgain) {
   emulated_.with([](auto&, auto& serial) { serial.pull_out(); });
   EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
                            [](const DriveSample& sample) { return !sample.checked; }));
-  emulated_.with([](auto&, auto& serial) { serial.put_in(); });
+  // The adapter lost its power, too.
+  emulated_.with([](auto& drive, auto& serial) {
+    drive.turn_bus_off();
+    serial.put_in();
+  });
   EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
                            [](const DriveSample& sample) { return sample.checked; }));
 }

@@ -57,6 +57,7 @@ void Force::restart() noexcept {
 
 void Force::count_absent() noexcept {
   if (absent_ <= config_.max_hold_ticks) ++absent_;
+  // In every further tick, too: the model settles from the sample with which they come back.
   if (absent_ == config_.max_hold_ticks + 1) restart();
 }
 
