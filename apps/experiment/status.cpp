@@ -3,18 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <set>
 
-#include "apps/experiment/folder/sealed_assignment.hpp"
 #include "apps/libraries/experiment/file/standing.hpp"
 #include "services/core/contract/config_error.hpp"
-#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::experiment {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string state_of(const Progress& progress) {
   if (!progress.excluded().empty()) return "excluded: " + progress.excluded();
@@ -62,12 +57,8 @@ Overview overview_of(const Folder& folder) {
       overview.findings.push_back(std::move(finding));
     }
   }
-  if (const fs::path opened = folder.path() / kOpenedFile;
-      folder.unblinded() &&
-      recording::read_file(opened.string()) != opened_text(folder.design(), folder.assignment())) {
-    overview.findings.push_back(
-        opened.string() +
-        ": differs from assignment.sealed; `stillhand experiment unblind` writes it again");
+  if (const std::string finding = folder.opening_finding(); !finding.empty()) {
+    overview.findings.push_back(finding);
   }
   return overview;
 }

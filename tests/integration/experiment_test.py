@@ -400,6 +400,8 @@ class RefusalTest(ExperimentTestCase):
         self.assertIn("without experiment.yaml", experiment("run", self.folder, status=2)[1])
         (self.study / "assignment.json").write_text("{}\n")
         self.assertIn("assignment.json: differs from assignment.sealed", experiment("status", self.study, status=2)[1])
+        for verb in (("report",), ("export", "--csv", "--out", self.folder / "set")):
+            self.assertIn("differs from assignment.sealed", experiment(verb[0], self.study, *verb[1:], status=2)[1])
         (self.study / "assignment.sealed").write_text("00\n")
         self.assertIn("assignment.sealed", experiment("status", self.study, status=2)[1])
 

@@ -139,8 +139,7 @@ void write_top(SetFiles& files, const DataSet& set, const Folder& folder, const 
   files.write(".bidsignore", std::string(kSumsFile) + "\n");
   files.write("participants.tsv", participants_tsv(set));
   files.write("participants.json", participants_json());
-  files.write("sourcedata/experiment.yaml",
-              recording::read_file((folder.path() / kDesignFile).string()));
+  files.write("sourcedata/experiment.yaml", registered_text(folder.path()));
   const auto has = [&](auto wanted) { return std::ranges::any_of(set.participants, wanted); };
   for (const TrialKind kind : {TrialKind::kPractice, TrialKind::kTracking}) {
     if (!has([kind](const auto& each) {

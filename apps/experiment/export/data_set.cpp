@@ -120,6 +120,20 @@ void add_session(ExportedParticipant& participant, const Folder& folder, const P
   }
 }
 
+// A file that was cut off behind its session would take trials out of the data set without a word.
+void require_completed(const ExportedParticipant& participant, const JournalTrials& known) {
+  for (const auto& [place, entry] : known) {
+    if (entry.kind != EntryKind::kTrialEnded || !entry.completed) continue;
+    const bool there = std::ranges::any_of(participant.trials, [&](const ExportedTrial& each) {
+      return each.session == place.first && each.trial.number == place.second;
+    });
+    if (there) continue;
+    throw ConfigError(fmt::format("{}, session {:02}", participant.code, place.first),
+                      fmt::format("no trial {} in session.mcap", place.second),
+                      "the recording of every trial that the journal calls completed");
+  }
+}
+
 void add_answers(ExportedParticipant& participant, const Folder& folder, const Plan& plan,
                  const std::vector<Entry>& entries) {
   for (const Entry& entry : entries) {
@@ -169,6 +183,7 @@ DataSet data_set_of(const Folder& folder, const OnSession& on_session) {
     for (std::int64_t session = 1; session <= progress.sessions(); ++session) {
       add_session(participant, folder, plan, session, known);
     }
+    require_completed(participant, known);
     add_answers(participant, folder, plan, entries);
     any = any || !participant.trials.empty();
     out.participants.push_back(std::move(participant));

@@ -64,7 +64,7 @@ std::vector<std::string> write_plain(const ExportOptions& options, const DataSet
   }
   files.write("README", tables_readme(folder, set, options.release));
   files.write("columns.json", columns_json(folder.design()));
-  files.write(kDesignFile, recording::read_file((folder.path() / kDesignFile).string()));
+  files.write(kDesignFile, registered_text(folder.path()));
   files.write_sums();
   return left_out;
 }

@@ -63,14 +63,6 @@ std::string wrong_place(const std::filesystem::path& file,
   return "";
 }
 
-// The ends of lines as they were registered: an editor of Windows changes them, writes a mark of
-// the byte order, and nothing else.
-std::string with_plain_line_ends(std::string text) {
-  std::erase(text, '\r');
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  return text;
-}
-
 // What a desktop, an office program, a store or a file system leaves in a folder that somebody
 // looked at.
 bool is_a_desktops(const std::string& name) {
@@ -89,7 +81,7 @@ Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
     throw ConfigError(path_.string(), "a folder without experiment.yaml",
                       "a folder that `stillhand experiment new` made");
   }
-  const std::string yaml = with_plain_line_ends(recording::read_file(file.string()));
+  const std::string yaml = registered_text(path_);
   digest_ = digest::sha256(yaml);
   const std::string registered = recording::read_file((path_ / kDigestFile).string());
   if (!registered.starts_with(digest_) && !participants().empty()) {
@@ -191,7 +183,17 @@ std::vector<std::string> Folder::findings(std::size_t index,
   return found;
 }
 
+std::string Folder::opening_finding() const {
+  const std::string opened = (path_ / kOpenedFile).string();
+  if (!unblinded() || recording::read_file(opened) == opened_text(design_, assignment_)) return "";
+  return opened +
+         ": differs from assignment.sealed; `stillhand experiment unblind` writes it again";
+}
+
 void Folder::refuse_findings() const {
+  if (const std::string finding = opening_finding(); !finding.empty()) {
+    throw ConfigError("assignment.json", finding, "what unblinding wrote");
+  }
   for (const std::size_t index : participants()) {
     for (const std::string& finding : findings(index, read_journal(journal(index)))) {
       throw ConfigError(participant_code(index), finding, "the folder as the sessions left it");
@@ -224,9 +226,17 @@ void make_folder(const std::filesystem::path& path, Design design, std::uint64_t
   const std::string sealed = sealed_text(order_seed);
   design.assignment = digest::sha256(sealed);
   const std::string yaml = yaml_of(design);
-  recording::write_file(path / kSealedFile, sealed);
-  recording::write_file(path / kDigestFile, digest_line(digest::sha256(yaml), kDesignFile));
-  recording::write_file(path / kDesignFile, yaml);  // last: it makes the folder an experiment
+  try {
+    recording::write_file(path / kSealedFile, sealed);
+    recording::write_file(path / kDigestFile, digest_line(digest::sha256(yaml), kDesignFile));
+    recording::write_file(path / kDesignFile, yaml);  // last: it makes the folder an experiment
+  } catch (...) {
+    // A disk that was full: the same line finds an empty folder once there is room.
+    for (const char* name : {kSealedFile, kDigestFile, "participants"}) {
+      std::filesystem::remove(path / name, error);
+    }
+    throw;
+  }
 }
 
 }  // namespace stillhand::experiment

@@ -49,7 +49,10 @@ class Folder {
   [[nodiscard]] std::vector<std::string> findings(std::size_t index,
                                                   const std::vector<Entry>& entries) const;
 
-  /// @throws ConfigError naming the first of findings() over all participants
+  /// What is wrong with assignment.json; empty: nothing, or nobody has unblinded.
+  [[nodiscard]] std::string opening_finding() const;
+
+  /// @throws ConfigError naming opening_finding(), or the first of findings() over all participants
   void refuse_findings() const;
 
   /// Writes the digests of experiment.yaml and of the model of condition C+ as they are now: before

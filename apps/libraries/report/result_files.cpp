@@ -14,6 +14,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "apps/libraries/report/experiment_place.hpp"
 #include "apps/libraries/report/provenance.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/core/contract/expects.hpp"
@@ -34,6 +35,7 @@ fs::path followed(const fs::path& path) {
 
 void check_place(const ResultFile& file, const fs::path& place) {
   const std::string name = file.path.string();
+  refuse_place_of_experiment(place, file.option);
   std::error_code error;
   if (fs::is_directory(place, error)) {
     throw ConfigError(file.option, name + ", a folder", "the name of a file");

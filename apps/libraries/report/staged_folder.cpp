@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "apps/libraries/report/experiment_place.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/recording/file_io.hpp"
 
@@ -35,6 +36,7 @@ fs::path made_absolute(const fs::path& path, const std::string& option) {
   if (path.empty() || error) {
     throw ConfigError(option, "\"" + path.string() + "\"", "a folder that can be made");
   }
+  refuse_place_of_experiment(out, option);
   return out;
 }
 

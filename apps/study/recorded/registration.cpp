@@ -5,7 +5,6 @@
 #include "apps/study/subjects/conditions.hpp"
 #include "services/core/contract/config_error.hpp"
 #include "services/files/digest/digest.hpp"
-#include "services/files/recording/file_io.hpp"
 
 namespace stillhand::study {
 
@@ -15,7 +14,7 @@ std::optional<Registration> registration_of(const std::vector<std::filesystem::p
   for (const std::filesystem::path& folder : folders) {
     const std::filesystem::path file = folder / experiment::kDesignFile;
     if (!std::filesystem::is_regular_file(file)) continue;
-    const std::string yaml = recording::read_file(file.string());
+    const std::string yaml = experiment::registered_text(folder);
     if (digest::sha256(yaml) != digest) {
       throw ConfigError(
           file.string(), "SHA-256 " + digest::sha256(yaml).substr(0, 12) + "...",

@@ -5,6 +5,7 @@
 
 #include "apps/libraries/report/command_line.hpp"
 #include "services/core/contract/config_error.hpp"
+#include "services/files/recording/file_io.hpp"
 #include "services/files/settings/load.hpp"
 #include "services/files/settings/placed_error.hpp"
 #include "services/files/settings/yaml_text.hpp"
@@ -118,6 +119,13 @@ std::string yaml_of(const std::vector<Question>& questions) {
 std::string command_for(std::string_view verb, const std::filesystem::path& folder) {
   return fmt::format("stillhand experiment {} {}{}", verb, report::quoted_for_shell(folder),
                      verb == "unblind" ? " --reason TEXT" : "");
+}
+
+std::string registered_text(const std::filesystem::path& folder) {
+  std::string text = recording::read_file((folder / kDesignFile).string());
+  std::erase(text, '\r');
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  return text;
 }
 
 std::string yaml_of(const Design& design) {

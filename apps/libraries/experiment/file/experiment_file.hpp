@@ -15,6 +15,10 @@ inline constexpr const char* kDesignFile = "experiment.yaml";
 /// requires.
 std::string command_for(std::string_view verb, const std::filesystem::path& folder);
 
+/// experiment.yaml of a folder as it was registered; its SHA-256 names the experiment.  An editor
+/// of Windows changes the ends of lines and writes a mark of the byte order: neither counts.
+std::string registered_text(const std::filesystem::path& folder);
+
 /// experiment.yaml with a comment above every key; read_design() gives the same design again.
 std::string yaml_of(const Design& design);
 

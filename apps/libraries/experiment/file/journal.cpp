@@ -8,11 +8,11 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "services/core/contract/config_error.hpp"
@@ -70,8 +70,7 @@ Entry entry_of(const std::string& line, const std::string& place) {
 }
 
 [[noreturn]] void refuse_write(const std::filesystem::path& file) {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): one thread writes the journal
-  throw std::runtime_error(file.string() + ": " + std::strerror(errno));
+  throw std::runtime_error(file.string() + ": " + std::generic_category().message(errno));
 }
 
 }  // namespace
@@ -114,8 +113,8 @@ std::vector<Entry> read_journal(const std::filesystem::path& file) {
 Journal::Journal(const std::filesystem::path& file) : file_(file) {
   descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (descriptor_ < 0) {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): before any thread
-    throw ConfigError(file.string(), std::strerror(errno), "a journal that can be written");
+    throw ConfigError(file.string(), std::generic_category().message(errno),
+                      "a journal that can be written");
   }
   try {
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
