@@ -17,6 +17,11 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+// Paper III-C: the box is 30 mm wide, moving RMS and dwell are of 10 s, and the line of the
+// crossover is fitted to the lowest 11 of 15.
+constexpr double kBoxHalfWidth_m = 0.015;
+constexpr double kWindow_s = 10.0;
+constexpr int kFittedLines = 11;
 // Unexcited harmonics that measure the remnant next to a line.
 constexpr int kNeighbours = 6;
 // Rate below which samples aren't averaged any further [Hz]; the fastest line is at 4 Hz.
@@ -28,8 +33,7 @@ std::vector<double> difference(const std::vector<double>& left, const std::vecto
   return out;
 }
 
-void check(const TrackingRecord& record, const signal::ReferenceDesign& design,
-           const TrackingMetricsConfig& config) {
+void check(const TrackingRecord& record, const signal::ReferenceDesign& design) {
   if (!(record.rate_hz > 0.0) || record.target_m.size() != record.cursor_m.size()) {
     throw ConfigError(
         "tracking.cursor_m", std::to_string(record.cursor_m.size()) + " samples",
@@ -46,12 +50,6 @@ void check(const TrackingRecord& record, const signal::ReferenceDesign& design,
       throw ConfigError("tracking.sample[" + std::to_string(n) + "]", "NaN or infinity",
                         "a finite value");
     }
-  }
-  if (config.fitted_lines < 2 || config.fitted_lines > static_cast<int>(signal::kReferenceLines)) {
-    throw ConfigError("tracking.fitted_lines", std::to_string(config.fitted_lines), "2 to 15");
-  }
-  if (!(config.window_s * record.rate_hz >= 1.0)) {
-    throw ConfigError("tracking.window_s", std::to_string(config.window_s), "a sample or more");
   }
 }
 
@@ -135,8 +133,7 @@ double pooled_fit_hz(const OpenLoopLine* lines, const std::vector<Complex>& erro
 }
 
 void add_open_loop(TrackingMetrics& out, const TrackingRecord& record,
-                   const std::vector<double>& error_m, const signal::ReferenceDesign& design,
-                   int fitted_lines) {
+                   const std::vector<double>& error_m, const signal::ReferenceDesign& design) {
   const std::size_t group = group_size(record, design);
   const std::vector<double> cursor = thinned(record.cursor_m, group);
   const std::vector<double> error = thinned(error_m, group);
@@ -148,8 +145,8 @@ void add_open_loop(TrackingMetrics& out, const TrackingRecord& record,
     out.lines[k] = open_loop_line(cursor, error, errors.back(), harmonic, design);
     out.lines[k].frequency_hz = static_cast<double>(harmonic) / duration_s;
   }
-  out.crossover_hz = slope_fit_hz(out.lines.data(), fitted_lines);
-  out.crossover_reference_hz = pooled_fit_hz(out.lines.data(), errors, fitted_lines);
+  out.crossover_hz = slope_fit_hz(out.lines.data(), kFittedLines);
+  out.crossover_reference_hz = pooled_fit_hz(out.lines.data(), errors, kFittedLines);
 }
 
 // Eq. ID-17 by a sliding sum, summed again every window so that rounding cannot build up.
@@ -173,21 +170,20 @@ std::vector<double> moving_mean(const std::vector<double>& values, std::size_t w
 }  // namespace
 
 TrackingMetrics tracking_metrics(const TrackingRecord& record,
-                                 const signal::ReferenceDesign& design,
-                                 const TrackingMetricsConfig& config) {
-  check(record, design, config);
+                                 const signal::ReferenceDesign& design) {
+  check(record, design);
   const std::vector<double> error_m = difference(record.target_m, record.cursor_m);
   std::vector<double> squared_mm2;
   std::vector<double> inside;
   for (const double e : error_m) {
     squared_mm2.push_back(e * kMmPerM * e * kMmPerM);
-    inside.push_back(std::abs(e) < config.box_half_width_m ? 1.0 : 0.0);
+    inside.push_back(std::abs(e) < kBoxHalfWidth_m ? 1.0 : 0.0);
   }
   TrackingMetrics out;
   out.rms_error_mm = std::sqrt(signal::mean(squared_mm2));
   out.dwell_ratio = signal::mean(inside);
-  add_open_loop(out, record, error_m, design, config.fitted_lines);
-  const auto window = static_cast<std::size_t>(std::lround(config.window_s * record.rate_hz));
+  add_open_loop(out, record, error_m, design);
+  const auto window = static_cast<std::size_t>(std::lround(kWindow_s * record.rate_hz));
   out.moving_rms_mm = moving_mean(squared_mm2, window);
   for (double& value : out.moving_rms_mm) value = std::sqrt(value);
   out.moving_dwell = moving_mean(inside, window);

@@ -17,13 +17,6 @@ struct TrackingRecord {
   std::vector<double> cursor_m;  ///< x_p [m]
 };
 
-/// Settings of the metrics; paper III-C.
-struct TrackingMetricsConfig {
-  double box_half_width_m = 0.015;  ///< [m] the box is 30 mm wide
-  double window_s = 10.0;           ///< [s] moving RMS and dwell
-  int fitted_lines = 11;            ///< [-] lowest lines in the crossover fit
-};
-
 /// Open loop at one line of the reference.
 struct OpenLoopLine {
   std::int64_t harmonic;      ///< h [cycles a trial]
@@ -53,7 +46,6 @@ struct TrackingMetrics {
 /// @throws stillhand::ConfigError for unequal or short records, a sample that isn't finite, or a
 /// harmonic beyond half the rate.
 TrackingMetrics tracking_metrics(const TrackingRecord& record,
-                                 const signal::ReferenceDesign& design,
-                                 const TrackingMetricsConfig& config = {});
+                                 const signal::ReferenceDesign& design);
 
 }  // namespace stillhand::identification

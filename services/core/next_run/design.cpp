@@ -270,22 +270,6 @@ MatrixXd greatest(const std::vector<Tried>& all) {
   return most;
 }
 
-// The recorded motion for as long, from its longest stretch.
-Measurement repeated(const Measurement& run, const Measurement& recorded,
-                     const std::string& input) {
-  Measurement again = run;
-  const Stretch& stretch = *std::ranges::max_element(
-      recorded.stretches, {}, [](const Stretch& s) { return s.end - s.first; });
-  for (diagnosis::Channel& channel : again.channels) {
-    if (channel.name != input) continue;
-    const std::vector<double>& values = recorded.find(input)->values;
-    for (std::size_t n = 0; n < channel.values.size(); ++n) {
-      channel.values[n] = values[stretch.first + n % (stretch.end - stretch.first)];
-    }
-  }
-  return again;
-}
-
 }  // namespace
 
 std::string in_words(Family family) {
@@ -361,7 +345,8 @@ Plan best_plan(const Contest& contest, const Measurement& recorded, const Bounds
   plan.chance = contest.chance(plan.expected);
   plan.probability_settled = contest.probability_settled(plan.expected);
   plan.probability_repeated = contest.probability_settled(
-      contest.expected(repeated(plan.run, recorded, model.inputs.front()), kSteps));
+      // No channel is of the plan: the recorded motion for as long.
+      contest.expected(run_of(plan.ride.motion, recorded, "", model.output), kSteps));
   return plan;
 }
 

@@ -62,7 +62,7 @@ Scatter scatter_of(const planted::Draft& draft, const Effect& start, const std::
   const bool is_term = effect_kind(start.kind).stage(start) == Stage::kTerm;
   const Model linear = first;
   const Screening screening(linear, signals, blocks, ImpulseResponse{});
-  first.effects = {is_term ? screening.with_coefficients(start).first : start};
+  first.effects = {is_term ? screening.with_coefficients(start).effect : start};
   // As the search does: a body that was fitted without the effect may be in a local minimum.
   std::vector<double> left = signals.output().values;
   std::vector<std::vector<double>> inputs;

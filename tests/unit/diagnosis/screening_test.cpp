@@ -90,16 +90,17 @@ TEST(ScreeningTest, PassagesThroughTheBodyAreDifferencesBehindItsPoles) {
 
 TEST(ScreeningTest, AnEffectIsGivenTheCoefficientsOfItsColumns) {
   const made::Studied of(made::with_another_channel(kCount), 2);
-  const auto [effect, gain] =
+  const auto [effect, gain, body] =
       of.screening.with_coefficients({"coupled_input", "static", {"v"}, {}, {}});
+  EXPECT_FALSE(body);
   ASSERT_EQ(effect.coefficients.size(), 1u);
   EXPECT_NEAR(effect.coefficients[0], 0.3, 0.003);
   EXPECT_NEAR(gain, of.screening.gain({of.signals.at("v").values}).share, 1e-12);
-  const auto [passing, more] =
+  const Proposal passing =
       of.screening.with_coefficients({"coupled_input", "through the body", {"v"}, {}, {}});
-  EXPECT_EQ(passing.coefficients.size(), 3u);
+  EXPECT_EQ(passing.effect.coefficients.size(), 3u);
   // 0.3 A(q)/A(q) = 0.3: the path through the body can do the same.
-  EXPECT_NEAR(more, gain, 0.01);
+  EXPECT_NEAR(passing.gain, gain, 0.01);
 }
 
 // Before a clipping output the column counts only where nothing clips.

@@ -157,15 +157,12 @@ std::vector<Proposal> square_proposals(const Screening& screening) {
 std::vector<Proposal> Asymmetry::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
   std::vector<Proposal> proposals;
-  const auto add = [&proposals](std::vector<Proposal> more) {
-    for (Proposal& each : more) proposals.push_back(std::move(each));
-  };
-  add(loop_proposals(
-      screening, "asymmetry", "slopes",
-      [](double z, LoopMemory& /*memory*/) { return std::abs(z); }, true));
-  add(loop_proposals(
-      screening, "asymmetry", "square", [](double z, LoopMemory& /*memory*/) { return z * z; },
-      true));
+  append(proposals, loop_proposals(
+                        screening, "asymmetry", "slopes",
+                        [](double z, LoopMemory& /*memory*/) { return std::abs(z); }, true));
+  append(proposals, loop_proposals(
+                        screening, "asymmetry", "square",
+                        [](double z, LoopMemory& /*memory*/) { return z * z; }, true));
   std::vector<double> size = screening.prediction();
   for (double& y : size) y = std::abs(y);
   const ScreenedGain at_output = screening.gain({size});
@@ -193,15 +190,14 @@ std::vector<Proposal> Asymmetry::proposed(const Screening& screening) const {
   for (const Signal& signal : signals.all()) {
     if (signal.derived) continue;
     for (const char* form : {"square, beside the body", "square, through the body"}) {
-      auto [effect, gain] = screening.with_coefficients(
-          {"asymmetry", form, {signal.name}, {constant("centre", signal.unit, signal.mean)}, {}});
-      of_channels.push_back({std::move(effect), gain, {}});
+      of_channels.push_back(screening.with_coefficients(
+          {"asymmetry", form, {signal.name}, {constant("centre", signal.unit, signal.mean)}, {}}));
     }
   }
-  add(best_of(std::move(of_channels), 1));
+  append(proposals, best_of(std::move(of_channels), 1));
   proposals = best_of(std::move(proposals), 4);
-  add(square_proposals(screening));
-  add(size_proposals(screening));
+  append(proposals, square_proposals(screening));
+  append(proposals, size_proposals(screening));
   return proposals;
 }
 

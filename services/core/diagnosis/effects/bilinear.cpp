@@ -96,19 +96,18 @@ std::vector<Proposal> Bilinear::proposed(const Screening& screening) const {
       const Signal& other = *measured[j];
       for (const char* form : {"beside the body", "through the body"}) {
         if (screening.model().body.order() == 0 && form[0] == 't') continue;
-        auto [effect, gain] =
+        products.push_back(
             screening.with_coefficients({"bilinear",
                                          form,
                                          {signal.name, other.name},
                                          {constant("centre_1", signal.unit, signal.mean),
                                           constant("centre_2", other.unit, other.mean)},
-                                         {}});
-        products.push_back({std::move(effect), gain, {}});
+                                         {}}));
       }
     }
   }
   std::vector<Proposal> all = best_of(std::move(products), 2);
-  for (Proposal& each : best_of(std::move(gains), 1)) all.push_back(std::move(each));
+  append(all, best_of(std::move(gains), 1));
   return all;
 }
 

@@ -47,10 +47,6 @@ class CoulombFriction final : public EffectKind {
     columns.push_back(rate.values);
     for (double& v : columns.back()) v = std::tanh(v / effect.value(0));
   }
-  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
-                                        std::size_t /*i*/) const override {
-    return "-";
-  }
   [[nodiscard]] ControlRole drive_role(const Effect& effect) const override {
     return control::Friction{effect.parameters.empty() ? 0.0 : effect.value(0)};
   }
@@ -91,8 +87,7 @@ std::vector<Proposal> CoulombFriction::proposed(const Screening& screening) cons
       forms.push_back({"coulomb_friction", "sign, through the body", {signal.name}, {}, {}});
     }
     for (Effect& form : forms) {
-      auto [effect, gain] = screening.with_coefficients(std::move(form));
-      proposals.push_back({std::move(effect), gain, {}});
+      proposals.push_back(screening.with_coefficients(std::move(form)));
     }
   }
   return best_of(std::move(proposals), 3);

@@ -154,8 +154,7 @@ std::vector<Proposal> CoupledInput::proposed(const Screening& screening) const {
     }
     std::vector<Proposal> proposals;
     for (Effect& form : forms) {
-      auto [effect, gain] = screening.with_coefficients(std::move(form));
-      proposals.push_back({std::move(effect), gain, {}});
+      proposals.push_back(screening.with_coefficients(std::move(form)));
     }
     // The simplest form as well as the best: the joint fits decide.
     if (proposals.empty()) continue;

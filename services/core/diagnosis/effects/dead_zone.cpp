@@ -74,12 +74,10 @@ std::vector<Size> DeadZone::sizes(const SizeCase& at) const {
 std::vector<Proposal> DeadZone::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
   std::vector<Proposal> proposals;
-  const auto add = [&proposals](std::vector<Proposal> more) {
-    for (Proposal& each : more) proposals.push_back(std::move(each));
-  };
-  add(loop_proposals(
-      screening, "dead_zone", "play",
-      [](double z, LoopMemory& /*memory*/) { return std::clamp(z, -1.0, 1.0); }, false));
+  append(proposals,
+         loop_proposals(
+             screening, "dead_zone", "play",
+             [](double z, LoopMemory& /*memory*/) { return std::clamp(z, -1.0, 1.0); }, false));
   const auto widths = [](double deviation) {
     std::vector<double> values;
     for (const double width : kTriedWidths) values.push_back(width * deviation);
@@ -87,37 +85,38 @@ std::vector<Proposal> DeadZone::proposed(const Screening& screening) const {
   };
   const auto lost = [](double x, double width) { return -std::clamp(x, -width, width); };
   const Signal& input = signals.inputs().front();
-  add(input_map_proposals(screening,
-                          {"dead_zone",
-                           "at the input",
-                           {input.name},
-                           {{"half_width", input.unit, 0.0, 0.0, 3.0 * input.deviation}},
-                           {}},
-                          widths(input.deviation), lost));
+  append(proposals,
+         input_map_proposals(screening,
+                             {"dead_zone",
+                              "at the input",
+                              {input.name},
+                              {{"half_width", input.unit, 0.0, 0.0, 3.0 * input.deviation}},
+                              {}},
+                             widths(input.deviation), lost));
   const double deviation = signals.output().deviation;
-  add(output_map_proposals(screening,
-                           {"dead_zone",
-                            "at the output",
-                            {},
-                            {{"half_width", signals.output().unit, 0.0, 0.0, 3.0 * deviation}},
-                            {}},
-                           widths(deviation), lost,
-                           [](double y, double width) { return y + std::copysign(width, y); }));
+  append(proposals,
+         output_map_proposals(screening,
+                              {"dead_zone",
+                               "at the output",
+                               {},
+                               {{"half_width", signals.output().unit, 0.0, 0.0, 3.0 * deviation}},
+                               {}},
+                              widths(deviation), lost,
+                              [](double y, double width) { return y + std::copysign(width, y); }));
   std::vector<Proposal> of_channels;
   for (const Signal& signal : signals.all()) {
     if (signal.quantity != Quantity::kPosition || signal.derived) continue;
     for (const double width : widths(signal.deviation)) {
-      auto [effect, gain] = screening.with_coefficients(
+      of_channels.push_back(screening.with_coefficients(
           {"dead_zone",
            "beside the body",
            {signal.name},
            {{"half_width", signal.unit, width, 0.0, 3.0 * signal.deviation},
             constant("centre", signal.unit, signal.mean)},
-           {}});
-      of_channels.push_back({std::move(effect), gain, {}});
+           {}}));
     }
   }
-  add(best_of(std::move(of_channels), 1));
+  append(proposals, best_of(std::move(of_channels), 1));
   return proposals;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "services/core/diagnosis/effects/kinds.hpp"
+#include "services/core/diagnosis/effects/map_proposals.hpp"
 #include "services/core/diagnosis/effects/parts.hpp"
 #include "services/core/diagnosis/model/interpolation.hpp"
 
@@ -50,26 +50,15 @@ std::vector<std::vector<double>> delayed_inputs(const Signals& signals, double d
   return inputs;
 }
 
-Proposal with_body(const Screening& screening, double delay_s, Body body) {
-  Proposal proposal{
-      {"delay", "of the input", {}, {{"delay", "s", delay_s, kEarliest_s, kLatest_s}}, {}},
-      0.0,
-      body};
-  Model model = screening.model();
-  model.body = std::move(body);
-  model.effects.push_back(proposal.effect);
-  FreeRun run;
-  const double square = residual_of(model, screening.signals(), run).squaredNorm();
-  proposal.gain = run.finite ? 1.0 - square / screening.residual().squaredNorm()
-                             : -std::numeric_limits<double>::infinity();
-  return proposal;
+Effect delay_of(double delay_s) {
+  return {"delay", "of the input", {}, {{"delay", "s", delay_s, kEarliest_s, kLatest_s}}, {}};
 }
 
 // A delay moves the poles: each trial starts from a body of its own.
 Proposal with_own_body(const Screening& screening, double delay_s) {
   const Signals& signals = screening.signals();
   const auto order = static_cast<int>(screening.model().body.order());
-  return with_body(screening, delay_s,
+  return with_body(screening, delay_of(delay_s),
                    started_body(delayed_inputs(signals, delay_s), signals.output().values,
                                 screening.impulse_response(), signals, order));
 }
@@ -79,7 +68,7 @@ Proposal with_best_modes(const Screening& screening, const Proposal& from) {
   if (from.body->order() != 4) return from;
   const Signals& signals = screening.signals();
   const double delay_s = from.effect.value(0);
-  return with_body(screening, delay_s,
+  return with_body(screening, delay_of(delay_s),
                    with_other_mode(*from.body, delayed_inputs(signals, delay_s),
                                    signals.output().values, signals));
 }
@@ -88,7 +77,7 @@ Proposal with_best_modes(const Screening& screening, const Proposal& from) {
 Proposal with_moved_poles(const Screening& screening, const Proposal& from, double delay_s) {
   const Signals& signals = screening.signals();
   return with_body(
-      screening, delay_s,
+      screening, delay_of(delay_s),
       refined_body(*from.body, delayed_inputs(signals, delay_s), signals.output().values, signals));
 }
 

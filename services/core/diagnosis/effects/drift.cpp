@@ -81,10 +81,6 @@ class Drift final : public EffectKind {
       }
     }
   }
-  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
-                                        std::size_t /*i*/) const override {
-    return "-";
-  }
   [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
     Columns columns;
     terms(at.effect(), at.signals, {}, columns);
@@ -117,9 +113,9 @@ class Drift final : public EffectKind {
     }
     std::vector<Proposal> proposals;
     for (Effect& form : forms) {
-      auto [effect, gain] = screening.with_coefficients(std::move(form));
-      if (!stands_out(effect, of_residual, screening)) continue;
-      proposals.push_back({std::move(effect), gain, {}});
+      Proposal proposal = screening.with_coefficients(std::move(form));
+      if (!stands_out(proposal.effect, of_residual, screening)) continue;
+      proposals.push_back(std::move(proposal));
     }
     return best_of(std::move(proposals), 3);
   }

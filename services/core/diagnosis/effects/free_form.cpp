@@ -353,8 +353,7 @@ std::vector<Proposal> FreeForm::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
   std::vector<Proposal> proposals;
   const auto propose_term = [&](Effect effect) {
-    auto [found, share] = screening.with_coefficients(std::move(effect));
-    proposals.push_back({std::move(found), share, {}});
+    proposals.push_back(screening.with_coefficients(std::move(effect)));
   };
   const auto propose_gain = [&](Effect effect) {
     const std::vector<double> knots = knots_of(effect);

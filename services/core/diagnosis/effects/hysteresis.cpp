@@ -93,28 +93,26 @@ std::vector<Size> Hysteresis::sizes(const SizeCase& at) const {
 std::vector<Proposal> Hysteresis::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
   std::vector<Proposal> proposals;
-  const auto add = [&proposals](std::vector<Proposal> more) {
-    for (Proposal& each : more) proposals.push_back(std::move(each));
-  };
-  add(loop_proposals(screening, "hysteresis", "elastic-plastic", signal::stop_operator, false));
-  add(loop_proposals(screening, "hysteresis", "smooth", signal::dahl_operator, false));
+  append(proposals,
+         loop_proposals(screening, "hysteresis", "elastic-plastic", signal::stop_operator, false));
+  append(proposals,
+         loop_proposals(screening, "hysteresis", "smooth", signal::dahl_operator, false));
   std::vector<Proposal> of_channels;
   for (const Signal& signal : signals.all()) {
     if (signal.quantity != Quantity::kPosition) continue;
     for (const char* form : {"elastic-plastic, beside the body", "smooth, beside the body"}) {
       for (const double threshold : kTriedThresholds) {
-        auto [effect, gain] =
+        of_channels.push_back(
             screening.with_coefficients({"hysteresis",
                                          form,
                                          {signal.name},
                                          {{"threshold", signal.unit, threshold * signal.deviation,
                                            1e-3 * signal.deviation, 5.0 * signal.deviation}},
-                                         {}});
-        of_channels.push_back({std::move(effect), gain, {}});
+                                         {}}));
       }
     }
   }
-  add(best_of(std::move(of_channels), 1));
+  append(proposals, best_of(std::move(of_channels), 1));
   return best_of(std::move(proposals), 4);
 }
 

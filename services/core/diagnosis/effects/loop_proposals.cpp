@@ -118,7 +118,7 @@ std::vector<Proposal> loop_proposals(const Screening& screening, const std::stri
     }
   }
   std::vector<Proposal> all = best_of(std::move(at_output), 1);
-  for (Proposal& each : best_of(std::move(inside), 1)) all.push_back(std::move(each));
+  append(all, best_of(std::move(inside), 1));
   return all;
 }
 

@@ -122,13 +122,8 @@ std::vector<Proposal> NonlinearStiffness::proposed(const Screening& screening) c
   const Signals& signals = screening.signals();
   std::vector<Proposal> proposals =
       loop_proposals(screening, "nonlinear_stiffness", "bent", bent, false);
-  for (Proposal& each :
-       loop_proposals(screening, "nonlinear_stiffness", "levelled", levelled, false)) {
-    proposals.push_back(std::move(each));
-  }
-  for (Proposal& each : loop_proposals(screening, "nonlinear_stiffness", "cubic", cubic, true)) {
-    proposals.push_back(std::move(each));
-  }
+  append(proposals, loop_proposals(screening, "nonlinear_stiffness", "levelled", levelled, false));
+  append(proposals, loop_proposals(screening, "nonlinear_stiffness", "cubic", cubic, true));
   const double square = std::pow(deviation_of(screening.prediction()), 2);
   const double limit = 0.3 / square;
   const ScreenedGain of_cube = [&] {
@@ -148,15 +143,14 @@ std::vector<Proposal> NonlinearStiffness::proposed(const Screening& screening) c
   std::vector<Proposal> of_channels;
   for (const Signal& signal : signals.all()) {
     if (signal.quantity != Quantity::kPosition || signal.derived) continue;
-    auto [effect, gain] =
+    of_channels.push_back(
         screening.with_coefficients({"nonlinear_stiffness",
                                      "cubic, beside the body",
                                      {signal.name},
                                      {constant("centre", signal.unit, signal.mean)},
-                                     {}});
-    of_channels.push_back({std::move(effect), gain, {}});
+                                     {}}));
   }
-  for (Proposal& each : best_of(std::move(of_channels), 1)) proposals.push_back(std::move(each));
+  append(proposals, best_of(std::move(of_channels), 1));
   return proposals;
 }
 

@@ -296,9 +296,9 @@ std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) con
     }
   }
   std::vector<Proposal> all = best_of(std::move(hard), 2);
-  for (Proposal& each : softened) all.push_back(std::move(each));
+  append(all, std::move(softened));
   all = best_of(std::move(all), 3);
-  for (Proposal& each : where_it_rests(screening)) all.push_back(std::move(each));
+  append(all, where_it_rests(screening));
   return all;
 }
 

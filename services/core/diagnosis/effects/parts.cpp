@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "services/core/diagnosis/model/evaluation.hpp"
 #include "services/core/diagnosis/model/loop.hpp"
@@ -15,6 +16,10 @@ std::vector<Proposal> best_of(std::vector<Proposal> proposals, std::size_t count
   std::ranges::stable_sort(proposals, std::ranges::greater(), &Proposal::gain);
   if (proposals.size() > count) proposals.resize(count);
   return proposals;
+}
+
+void append(std::vector<Proposal>& to, std::vector<Proposal> more) {
+  std::ranges::move(more, std::back_inserter(to));
 }
 
 std::vector<double> response_of(const Screening& screening, std::span<const double> numerator,

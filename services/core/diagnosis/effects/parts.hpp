@@ -13,6 +13,9 @@ namespace stillhand::diagnosis {
 /// The better ones of some proposals, best first.
 std::vector<Proposal> best_of(std::vector<Proposal> proposals, std::size_t count);
 
+/// Puts more proposals behind others.
+void append(std::vector<Proposal>& to, std::vector<Proposal> more);
+
 /// The response of a path with the body's poles and another numerator to a signal.
 std::vector<double> response_of(const Screening& screening, std::span<const double> numerator,
                                 const std::vector<double>& input);

@@ -46,10 +46,6 @@ class PositionRipple final : public EffectKind {
   [[nodiscard]] bool time_only(const Effect& effect) const override {
     return effect.channels.at(0).starts_with("position of ");
   }
-  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
-                                        std::size_t /*i*/) const override {
-    return "-";
-  }
   [[nodiscard]] ControlRole drive_role(const Effect& effect) const override {
     return control::Waves{effect.value(0)};
   }
@@ -119,8 +115,7 @@ std::vector<Proposal> PositionRipple::proposed(const Screening& screening) const
                  shares_a_harmonic(each, ripple, range);
         });
         if (known) return;
-        auto [effect, gain] = screening.with_coefficients(ripple);
-        proposals.push_back({std::move(effect), gain, {}});
+        proposals.push_back(screening.with_coefficients(ripple));
       };
       propose("one harmonic", line.frequency);
       // The strongest line may be the first harmonic or the second.

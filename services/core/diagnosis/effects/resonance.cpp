@@ -38,6 +38,10 @@ class Resonance final : public EffectKind {
       columns.push_back(std::move(x.values));
     }
   }
+  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
+                                        std::size_t /*i*/) const override {
+    return {};
+  }
   [[nodiscard]] std::vector<double> own_poles(const Effect& effect, double rate_hz) const override {
     return mode_denominator(effect.value(0), effect.value(1), rate_hz);
   }
@@ -158,13 +162,12 @@ std::vector<Proposal> Resonance::proposed(const Screening& screening) const {
     const auto steps = static_cast<int>(std::log(highest_hz / kLowest_hz) / std::log(ratio));
     for (int i = 0; i <= steps; ++i) {
       const double frequency_hz = kLowest_hz * std::pow(ratio, i);
-      auto [effect, gain] =
-          screening.with_coefficients(mode_beside(screening, frequency_hz, damping));
-      proposals.push_back({std::move(effect), gain, {}});
+      proposals.push_back(
+          screening.with_coefficients(mode_beside(screening, frequency_hz, damping)));
     }
   }
   proposals = best_of(std::move(proposals), 1);
-  for (Proposal& each : from_larger_bodies(screening)) proposals.push_back(std::move(each));
+  append(proposals, from_larger_bodies(screening));
   return proposals;
 }
 

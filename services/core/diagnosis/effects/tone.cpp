@@ -38,10 +38,6 @@ class Tone final : public EffectKind {
     columns.push_back(std::move(sine));
     columns.push_back(std::move(cosine));
   }
-  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
-                                        std::size_t /*i*/) const override {
-    return "-";
-  }
   [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
     return control::Waves{effect.value(0)};
   }
@@ -58,14 +54,13 @@ class Tone final : public EffectKind {
                                             kFewestPeriods * line_hz,
                                             kHighestToneOfRate * signals.rate_hz(), kLines)) {
       if (line.prominence < kLeastProminence) continue;
-      auto [effect, gain] = screening.with_coefficients(
+      proposals.push_back(screening.with_coefficients(
           {"tone",
            "beside the body",
            {},
            {{"frequency", "Hz", line.frequency, line.frequency - 0.5 * line_hz,
              line.frequency + 0.5 * line_hz}},
-           {}});
-      proposals.push_back({std::move(effect), gain, {}});
+           {}}));
     }
     return best_of(std::move(proposals), 1);
   }

@@ -109,10 +109,10 @@ Columns Screening::term_columns(const Effect& effect) const {
   return passed;
 }
 
-std::pair<Effect, double> Screening::with_coefficients(Effect effect) const {
+Proposal Screening::with_coefficients(Effect effect) const {
   const ScreenedGain found = gain(term_columns(effect));
   effect.coefficients = found.coefficients;
-  return {std::move(effect), found.share};
+  return {std::move(effect), found.share, {}};
 }
 
 }  // namespace stillhand::diagnosis

@@ -59,8 +59,8 @@ class Screening {
   [[nodiscard]] Columns through_body(const std::vector<double>& column) const;
   /// Columns of an effect, kTerm only, through the body's poles where it passes them.
   [[nodiscard]] Columns term_columns(const Effect& effect) const;
-  /// A copy of the effect with coefficients as screened, and its gain; kTerm only.
-  [[nodiscard]] std::pair<Effect, double> with_coefficients(Effect effect) const;
+  /// The effect with coefficients as screened, and its gain; kTerm only.
+  [[nodiscard]] Proposal with_coefficients(Effect effect) const;
 
  private:
   const Model& model_;

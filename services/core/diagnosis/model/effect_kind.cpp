@@ -50,7 +50,7 @@ void EffectKind::terms(const Effect& /*effect*/, const Signals& /*signals*/,
                        const std::vector<double>& /*body_output*/, Columns& /*columns*/) const {}
 std::string EffectKind::column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
                                     std::size_t /*i*/) const {
-  return {};
+  return "-";
 }
 bool EffectKind::through_body(const Effect& effect) const {
   return effect.form.find("through the body") != std::string::npos;

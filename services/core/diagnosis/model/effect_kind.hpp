@@ -96,8 +96,8 @@ class EffectKind {
   /// kTerm: appends a column for every signal that is weighed; through_body() says how.
   virtual void terms(const Effect& effect, const Signals& signals,
                      const std::vector<double>& body_output, Columns& columns) const;
-  /// kTerm: unit of column i as a recording's header has it, "-" for a pure number; empty: none
-  /// that can be named.
+  /// kTerm: unit of column i as a recording's header has it, "-" for a pure number, as here; empty:
+  /// none that can be named.
   [[nodiscard]] virtual std::string column_unit(const Effect& effect, const Signals& signals,
                                                 std::size_t i) const;
   /// kTerm: each column passes the body's poles with order + 1 coefficients, instead of one factor.
