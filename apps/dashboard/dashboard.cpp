@@ -41,9 +41,9 @@ Access access_of(const DashboardOptions& options) {
                       "--token-file FILE too, for those who act");
   }
   if (!options.token_file.empty()) {
-    const std::string token = read_token(options.token_file);
+    const std::string token = read_token("--token-file", options.token_file);
     if (options.watch_token_file.empty()) return Access(token);
-    const std::string watch_token = read_token(options.watch_token_file);
+    const std::string watch_token = read_token("--watch-token-file", options.watch_token_file);
     if (watch_token == token) {
       throw ConfigError("--watch-token-file", "the token of --token-file", "another token");
     }

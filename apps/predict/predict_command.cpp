@@ -91,7 +91,10 @@ int run(const Arguments& arguments) {
   }
   if (files.wants("--picture")) {
     if (!judgement) {
-      throw ConfigError("--picture", arguments.recording + " without '" + prediction.output + "'",
+      const bool held = measured.find(prediction.output) != nullptr;
+      throw ConfigError("--picture",
+                        held ? prediction.notes.back()
+                             : arguments.recording + " without '" + prediction.output + "'",
                         "a recording that holds the output");
     }
     const std::vector<report::Figure> figures{judgement_figure(*judgement)};

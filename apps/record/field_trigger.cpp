@@ -71,9 +71,9 @@ FieldTrigger::FieldTrigger(const std::string& text) : text_(text) {
 }
 
 bool FieldTrigger::prepare(const std::string& type, std::string_view idl) {
-  prepared_ = true;
   decoder_ = std::make_shared<Decoder>(type, idl);
   const auto& columns = decoder_->columns.columns();
+  prepared_ = true;
   const auto found = std::ranges::find(columns, field_, &recording::MessageColumn::name);
   if (found == columns.end() || found->kind == recording::CellKind::kText) return false;
   decoder_->column = static_cast<std::size_t>(found - columns.begin());

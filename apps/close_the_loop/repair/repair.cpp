@@ -100,12 +100,11 @@ double where(double value, double low, double high, const std::function<double(d
   return std::sqrt(low * high);
 }
 
-// A rig or a person without the effect, and what a canceller then knows; and one that knows it.
+// A rig or a person without the effect, and what a canceller then knows.
 struct Case {
   Model body;
   Drive drive;
   ControlModel mended;
-  ControlModel cancelled;
 };
 
 class Repair {
@@ -275,7 +274,7 @@ ControlModel Repair::knows(const Finding& finding) const {
 }
 
 Case Repair::case_of(const Finding& finding) const {
-  Case out{body(), drive_, result_.followed_model, knows(finding)};
+  Case out{body(), drive_, result_.followed_model};
   if (finding.where == kMotorPath) {
     out.drive.late_s = 0.0;
     return out;
@@ -299,14 +298,17 @@ void Repair::predict(const Finding& finding, Worth& out) const {
   const Case one = case_of(finding);
   const std::vector<double> left = errors(body(), drive_, &result_.followed_model);
   const std::vector<double> mended = errors(one.body, one.drive, &one.mended);
-  const std::vector<double> cancelled = errors(body(), drive_, &one.cancelled);
+  std::vector<double> cancelled = left;
+  if (out.is_cancelled) {
+    const ControlModel knowing = knows(finding);
+    cancelled = errors(body(), drive_, &knowing);
+  }
   out.left_mm = estimate(left);
   out.mended_mm = estimate(mended);
-  out.cancelled_mm = estimate(out.is_cancelled ? cancelled : left);
+  out.cancelled_mm = estimate(cancelled);
   const double relative = relative_error(finding);
   out.by_mending_mm = widened(estimate(differences(left, mended)), relative);
-  out.by_cancelling_mm =
-      widened(estimate(differences(left, out.is_cancelled ? cancelled : left)), relative);
+  out.by_cancelling_mm = widened(estimate(differences(left, cancelled)), relative);
 }
 
 Worth Repair::worth_of(const Finding& finding) const {

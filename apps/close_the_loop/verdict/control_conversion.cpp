@@ -298,7 +298,7 @@ void Conversion::carry(const Effect& effect, const control::Path& law) {
   }
   std::string names = effect.channels.front();
   for (std::size_t i = 1; i < effect.channels.size(); ++i) names += " and " + effect.channels[i];
-  treat(effect, true, "a path from " + names + " next to that of a_y");
+  treat(effect, true, "a path from " + names + " next to the body");
 }
 
 void Conversion::carry(const Effect& effect, const control::Hysteresis& law) {

@@ -121,14 +121,14 @@ std::string Access::cookie(const Request& request) const {
          "; Path=/; HttpOnly; SameSite=Strict";
 }
 
-std::string read_token(const std::string& file) {
+std::string read_token(const std::string& option, const std::string& file) {
   struct stat about{};
   if (stat(file.c_str(), &about) == 0) {
     if (!S_ISREG(about.st_mode)) {
-      throw ConfigError("--token-file " + file, "not a regular file", "a file with a token");
+      throw ConfigError(option + " " + file, "not a regular file", "a file with a token");
     }
     if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-      throw ConfigError("--token-file " + file, "a file that other users can read", "mode 600");
+      throw ConfigError(option + " " + file, "a file that other users can read", "mode 600");
     }
   }
   std::string token = recording::read_file(file);
@@ -137,7 +137,7 @@ std::string read_token(const std::string& file) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
   });
   if (token.size() < kShortest || token.size() > kLongest || !plain) {
-    throw ConfigError("--token-file " + file, std::to_string(token.size()) + " characters",
+    throw ConfigError(option + " " + file, std::to_string(token.size()) + " characters",
                       "one line of 16 to 256 letters, digits, '-', '_' and '.', for example from "
                       "`openssl rand -hex 32`");
   }

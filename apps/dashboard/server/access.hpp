@@ -51,6 +51,6 @@ class Access {
 
 /// The token of a file: 16 to 256 letters, digits, '-', '_' and '.', in a file that only its owner
 /// may read.  @throws ConfigError
-std::string read_token(const std::string& file);
+std::string read_token(const std::string& option, const std::string& file);
 
 }  // namespace stillhand::dashboard

@@ -87,13 +87,9 @@ std::vector<Answered> answers_to(const SessionRecording& session, const Trial& t
 
 std::vector<TickForces> forces_of(const SessionRecording& session, const Trial& trial,
                                   const std::vector<Answered>& answers) {
-  std::int64_t missing = 0;
-  const auto truth = [&](auto value) {
-    return measured(session.rig_truths, trial, value, missing);
-  };
+  const auto truth = [&](auto value) { return measured(session.rig_truths, trial, value); };
   const auto asked = [&](auto of) {
-    return measured(
-        answers, trial, [of](const Answered& each) { return each.answer.forces.*of; }, missing);
+    return measured(answers, trial, [of](const Answered& each) { return each.answer.forces.*of; });
   };
   const auto feedthrough_n = truth([](const auto& t) { return t.feedthrough_force_n(); });
   const auto motor_n = truth([](const auto& t) { return t.motor_force_n(); });
@@ -151,11 +147,9 @@ std::string why_other_settings(const SessionRecording& session, const Trial& tri
 /// Lateral acceleration, and other channels that move by more than a hundredth of it.
 std::vector<std::vector<double>> motion_of(const SessionRecording& session, const Trial& trial) {
   constexpr double kMoves = 0.01;
-  std::int64_t missing = 0;
-  const auto sensed = [&](auto value) { return measured(session.sensed, trial, value, missing); };
+  const auto sensed = [&](auto value) { return measured(session.sensed, trial, value); };
   std::vector<std::vector<double>> channels{measured(
-      session.rig_truths, trial, [](const auto& t) { return t.platform_acceleration_m_s2(); },
-      missing)};
+      session.rig_truths, trial, [](const auto& t) { return t.platform_acceleration_m_s2(); })};
   const double least_m_s2 = kMoves * rms(channels.front());
   for (std::vector<double> other :
        {sensed([](const auto& s) { return s.accel_x_m_s2(); }),

@@ -106,10 +106,7 @@ Excerpt excerpt_of(const std::vector<double>& feedthrough_n, const std::vector<d
 }
 
 ForceSignals true_forces(const SessionRecording& session, const Trial& trial) {
-  std::int64_t missing = 0;
-  const auto truth = [&](auto value) {
-    return measured(session.rig_truths, trial, value, missing);
-  };
+  const auto truth = [&](auto value) { return measured(session.rig_truths, trial, value); };
   const double lever_m = rig::StickConfig{}.lever_m;
   return {truth([](const auto& t) { return t.feedthrough_force_n(); }),
           truth([](const auto& t) { return t.motor_force_n(); }),
@@ -157,12 +154,10 @@ TrialResult evaluate_trial(const SessionRecording& session, const TrialOutcome& 
   result.label = planned.label;
   identification::TrackingRecord record;
   record.rate_hz = kControlRateHz;
-  record.target_m = measured(
-      session.tracking_samples, planned.trial, [](const auto& s) { return s.target_m(); },
-      result.missing_ticks);
-  std::int64_t again = 0;
-  record.cursor_m = measured(
-      session.tracking_samples, planned.trial, [](const auto& s) { return s.cursor_m(); }, again);
+  record.target_m =
+      measured(session.tracking_samples, planned.trial, [](const auto& s) { return s.target_m(); });
+  record.cursor_m =
+      measured(session.tracking_samples, planned.trial, [](const auto& s) { return s.cursor_m(); });
   const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
   result.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
   result.settled_rms_error_mm = settled_rms_error_mm(record);
@@ -176,11 +171,10 @@ RateConversionCost conversion_cost(const SessionRecording& session,
                                    const stillhand_msgs::FeedthroughModel& message,
                                    const Trial& trial) {
   const identification::FeedthroughModel model = identification::from_idl(message);
-  std::int64_t missing = 0;
-  const auto truth = measured(
-      session.rig_truths, trial, [](const auto& t) { return t.feedthrough_force_n(); }, missing);
+  const auto truth =
+      measured(session.rig_truths, trial, [](const auto& t) { return t.feedthrough_force_n(); });
   const auto accel_y = [](const auto& s) { return s.accel_y_m_s2(); };
-  const auto accel = measured(session.sensed, trial, accel_y, missing);
+  const auto accel = measured(session.sensed, trial, accel_y);
   const double ratio = kControlRateHz / model.fit.rate_hz;
   // Any message may be in a recording: a rate that is no rate has no cost.
   if (!(ratio >= 1.0 && ratio <= kControlRateHz)) return {NAN, NAN};
@@ -212,11 +206,9 @@ const stillhand_msgs::FeedthroughModel* identified_before(const SessionRecording
 }
 
 SensedMotion sensed_motion(const SessionRecording& session, const Trial& trial) {
-  std::int64_t missing = 0;
   const auto accel_y = [](const auto& s) { return s.accel_y_m_s2(); };
   const auto theta = [](const auto& s) { return s.theta_rad(); };
-  return {measured(session.sensed, trial, accel_y, missing),
-          measured(session.sensed, trial, theta, missing)};
+  return {measured(session.sensed, trial, accel_y), measured(session.sensed, trial, theta)};
 }
 
 void judge_by_senses(const SessionRecording& session, const std::vector<TrialOutcome>& outcomes,

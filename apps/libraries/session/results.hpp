@@ -31,7 +31,6 @@ struct Excerpt {
 struct TrialResult : TrialNumbers {
   std::int64_t number;
   Condition label;
-  std::int64_t missing_ticks = 0;  ///< of the tracking samples; the last one before is held
   /// The cancelled share from what is sensed, next to the session's trial without cancellation, Eq.
   /// SN-7.
   std::optional<SensedShare> sensed_share;

@@ -41,7 +41,7 @@ Prediction predict_tables(const std::vector<Metrics>& subjects, std::size_t simu
     const Differences row = differences(metrics);
     if (row.allFinite()) rows.push_back(row);
   }
-  if (rows.size() < 3) {
+  if (rows.size() < 3 || simulated < 2) {
     throw ConfigError("--explain-paper", std::to_string(rows.size()) + " subjects with a crossover",
                       "three or more");
   }

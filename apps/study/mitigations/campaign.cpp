@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <limits>
 
 #include "apps/study/mitigations/choices.hpp"
 #include "apps/study/subjects/study.hpp"
@@ -194,7 +193,6 @@ CellFigures cell_figures(const CellKey& key, std::vector<TrialFigures> people,
   std::vector<double> gained;
   std::vector<double> disturbed;
   std::vector<double> judged;
-  out.worst_restored = std::numeric_limits<double>::infinity();
   const auto count = static_cast<double>(out.people.size());
   for (std::size_t i = 0; i < out.people.size(); ++i) {
     const TrialFigures& one = out.people[i];
@@ -208,8 +206,7 @@ CellFigures cell_figures(const CellKey& key, std::vector<TrialFigures> people,
     out.restored.push_back(shown ? gained.back() / disturbed.back() : NAN);
     if (!shown) continue;
     judged.push_back(out.restored.back());
-    if (out.restored.back() < out.worst_restored) {
-      out.worst_restored = out.restored.back();
+    if (!out.worst_person || out.restored[i] < out.restored[*out.worst_person]) {
       out.worst_person = i;
     }
   }

@@ -41,10 +41,9 @@ struct CellFigures {
   double error_mm = 0.0;             ///< mean
   double motor_n = 0.0;              ///< mean of the RMS
   double effort_n = 0.0;
-  std::optional<statistics::RatioInterval> restored_mean;  ///< SU-5, Fieller
-  statistics::MedianInterval restored_median;
-  double worst_restored = 0.0;
-  std::size_t worst_person = 0;
+  std::optional<statistics::RatioInterval> restored_mean;     ///< SU-5, Fieller
+  std::optional<statistics::MedianInterval> restored_median;  ///< none: nobody was disturbed
+  std::optional<std::size_t> worst_person;                    ///< who got the least of `restored`
   std::size_t harmed = 0;
   statistics::ShareInterval harm;
 };

@@ -33,6 +33,8 @@ std::string mitigations_csv(const Campaign& campaign) {
       "harm high,motor [N],effort [N]\n";
   for (const CellFigures& cell : campaign.cells) {
     const auto& mean = cell.restored_mean;
+    const auto& median = cell.restored_median;
+    const auto& worst = cell.worst_person;
     out += csv::row({name_of(cell.key),
                      model_of(cell.key),
                      task_of(cell.key),
@@ -42,11 +44,11 @@ std::string mitigations_csv(const Campaign& campaign) {
                      text(mean ? mean->ratio : NAN),
                      text(mean ? mean->low : NAN),
                      text(mean ? mean->high : NAN),
-                     text(cell.restored_median.median),
-                     text(cell.restored_median.low),
-                     text(cell.restored_median.high),
-                     text(cell.worst_restored),
-                     std::to_string(cell.worst_person + 1),
+                     text(median ? median->median : NAN),
+                     text(median ? median->low : NAN),
+                     text(median ? median->high : NAN),
+                     text(worst ? cell.restored[*worst] : NAN),
+                     worst ? std::to_string(*worst + 1) : "",
                      std::to_string(cell.harmed),
                      text(cell.harm.share),
                      text(cell.harm.low),

@@ -33,16 +33,16 @@ void add_series(report::Panel& panel, const Campaign& campaign, TrialTask task, 
   for (const CellFigures& cell : campaign.cells) {
     const CellKey& key = cell.key;
     if (key.task != task || key.motion != motion || key.model != kModels[model]) continue;
-    if (key.mitigation == kB) continue;
+    if (key.mitigation == kB || !cell.restored_median) continue;
     std::size_t row = 0;
     while (wanted[row] != key.mitigation) ++row;
     const double aside = key.model == ModelOf::kOwn     ? 0.22
                          : key.model == ModelOf::kOther ? -0.22
                                                         : 0.0;
     const double at = static_cast<double>(wanted.size() - row) + aside;
-    points.x.push_back(kPercent * cell.restored_median.median);
+    points.x.push_back(kPercent * cell.restored_median->median);
     points.y.push_back(at);
-    for (const double end : {cell.restored_median.low, cell.restored_median.high}) {
+    for (const double end : {cell.restored_median->low, cell.restored_median->high}) {
       bars.x.push_back(kPercent * end);
       bars.y.push_back(at);
     }
@@ -126,9 +126,11 @@ report::Table table_of(const Campaign& campaign, TrialTask task, TrialMotion mot
       const auto& mean = cell.restored_mean;
       row.emplace_back(mean ? interval(mean->ratio, mean->low, mean->high) : "");
       const auto& median = cell.restored_median;
-      row.emplace_back(interval(median.median, median.low, median.high));
-      row.emplace_back(fmt::format("{:.0f} % (person {})", kPercent * cell.worst_restored,
-                                   cell.worst_person + 1));
+      row.emplace_back(median ? interval(median->median, median->low, median->high) : "");
+      row.emplace_back(cell.worst_person ? fmt::format("{:.0f} % (person {})",
+                                                       kPercent * cell.restored[*cell.worst_person],
+                                                       *cell.worst_person + 1)
+                                         : "");
       const bool harms = cell.harm.low > 0.0;
       row.emplace_back(interval(cell.harm.share, cell.harm.low, cell.harm.high),
                        harms ? report::Emphasis::kBad : report::Emphasis::kNone);

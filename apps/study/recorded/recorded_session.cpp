@@ -75,7 +75,7 @@ template <typename Message, typename Value>
 std::vector<double> kept(const std::vector<Message>& stream, const Trial& trial, Tick every,
                          double least_share, Value value) {
   std::int64_t missing = 0;
-  const std::vector<double> all = session::measured(stream, trial, value, missing);
+  const std::vector<double> all = session::measured(stream, trial, value, &missing);
   if (static_cast<double>(missing) >
       (1.0 - least_share) * static_cast<double>(trial.duration_ticks)) {
     throw ConfigError("trial " + std::to_string(trial.number),

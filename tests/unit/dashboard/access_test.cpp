@@ -131,20 +131,20 @@ class TokenFileTest : public ::testing::Test {
 
 TEST_F(TokenFileTest, ATokenIsOneLine) {
   write(kToken + "\n");
-  EXPECT_EQ(read_token(file_), kToken);
+  EXPECT_EQ(read_token("--token-file", file_), kToken);
 }
 
 TEST_F(TokenFileTest, WhatIsNoSecretIsRefused) {
   for (const std::string& text : {std::string(), std::string("short"), kToken + "\n" + kToken,
                                   kToken + " ", kToken + ";", std::string(257, 'a')}) {
     write(text);
-    EXPECT_THROW(read_token(file_), ConfigError) << text;
+    EXPECT_THROW(read_token("--token-file", file_), ConfigError) << text;
   }
   write(kToken, 0644);
-  EXPECT_THROW(read_token(file_), ConfigError);
-  EXPECT_THROW(read_token("/dev/zero"), ConfigError);
+  EXPECT_THROW(read_token("--token-file", file_), ConfigError);
+  EXPECT_THROW(read_token("--token-file", "/dev/zero"), ConfigError);
   std::filesystem::remove(file_);
-  EXPECT_THROW(read_token(file_), ConfigError);
+  EXPECT_THROW(read_token("--token-file", file_), ConfigError);
 }
 
 }  // namespace stillhand::dashboard::access_test

@@ -189,7 +189,7 @@ TEST_F(RequestFuzzTest, ATokenFileIsATokenOrRefusedInOneLine) {
     std::ofstream(file, std::ios::trunc | std::ios::binary) << text;
     chmod(file.c_str(), 0600);
     try {
-      const std::string token = read_token(file);
+      const std::string token = read_token("--token-file", file);
       ASSERT_GE(token.size(), 16u);
       ASSERT_LE(token.size(), 256u);
       ASSERT_TRUE(std::ranges::all_of(token, [](unsigned char c) {

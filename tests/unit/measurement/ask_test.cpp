@@ -53,6 +53,14 @@ TEST(AskTest, WithoutATimeTheSampleRateIsAskedFor) {
   EXPECT_EQ(sut.rate_hz, 500.0);
 }
 
+TEST(AskTest, ATitleIsNotTheBeginningOfAnother) {
+  const Dialogue sut = ask("a,b\n1,2\n1,2\n", "-\n#12\nacc\n#1 [g]\nb[N]\n\ninf\n1e300\n500\n");
+  EXPECT_THAT(sut.wishes, testing::ElementsAre("a=a_y [g]", "b=f [N]"));
+  EXPECT_THAT(sut.shown, HasSubstr("there is no column '#12'"));
+  EXPECT_THAT(sut.shown, HasSubstr("there is no column 'acc'"));
+  EXPECT_EQ(sut.rate_hz, 500.0);
+}
+
 TEST(AskTest, AnswersThatEndEarlyAreRefused) { EXPECT_THROW(ask(kRide, "\n\n"), ConfigError); }
 
 }  // namespace stillhand::measurement::ask_test

@@ -68,6 +68,11 @@ class Dialogue {
     return line;
   }
 
+  // A column "a" is not the one that "acc" asks for.
+  static bool ends_at(const std::string& text, std::size_t place) {
+    return place == text.size() || std::string_view(" [*/").find(text[place]) != std::string::npos;
+  }
+
   // "acc [g] * 2": the longest title or #number in front, then what belongs to the channel.
   std::optional<ColumnWish> wish_of(const std::string& text, const std::string& name) {
     std::size_t longest = 0;
@@ -75,7 +80,7 @@ class Dialogue {
     for (std::size_t i = 0; i < head_.columns.size(); ++i) {
       const ColumnHead& column = head_.columns[i];
       for (const std::string& word : {column.title, column.name, "#" + std::to_string(i + 1)}) {
-        if (word.size() > longest && text.starts_with(word)) {
+        if (word.size() > longest && text.starts_with(word) && ends_at(text, word.size())) {
           longest = word.size();
           reference = reference_to(head_, i);
         }
@@ -136,11 +141,13 @@ class Dialogue {
       const std::string text = answer("sample rate [Hz]");
       double rate_hz = 0.0;
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate_hz);
-      if (error == std::errc() && end == text.data() + text.size() && rate_hz > 0.0) {
-        mapping_.rate_hz = rate_hz;
+      if (error != std::errc() || end != text.data() + text.size()) rate_hz = 0.0;
+      try {
+        mapping_.rate_hz = check_rate_hz(rate_hz, "rate");
         return;
+      } catch (const ConfigError&) {
+        out_ << "  a number, for example 1000\n";
       }
-      out_ << "  a number, for example 1000\n";
     }
   }
 

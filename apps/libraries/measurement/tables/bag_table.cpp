@@ -42,6 +42,34 @@ std::int64_t whole_of(const Cell& cell) {
   return std::abs(value) <= 4e9 ? static_cast<std::int64_t>(value) : 0;
 }
 
+// How many of the stamps counted so far lie between two others: a binary indexed tree (Fenwick,
+// Software: Practice and Experience 24, 1994) over the stamps in their order.
+class CountedStamps {
+ public:
+  explicit CountedStamps(std::vector<std::int64_t> stamps)
+      : stamps_(std::move(stamps)), sums_(stamps_.size() + 1) {
+    std::ranges::sort(stamps_);
+  }
+  void count(std::int64_t stamp, std::ptrdiff_t by) {
+    for (std::size_t k = up_to(stamp); k < sums_.size(); k += k & (~k + 1)) sums_[k] += by;
+  }
+  [[nodiscard]] std::ptrdiff_t within(std::int64_t low, std::int64_t high) const {
+    return sum(up_to(high)) - sum(up_to(low - 1));
+  }
+
+ private:
+  [[nodiscard]] std::size_t up_to(std::int64_t stamp) const {
+    return static_cast<std::size_t>(std::ranges::upper_bound(stamps_, stamp) - stamps_.begin());
+  }
+  [[nodiscard]] std::ptrdiff_t sum(std::size_t k) const {
+    std::ptrdiff_t out = 0;
+    for (; k > 0; k &= k - 1) out += sums_[k];
+    return out;
+  }
+  std::vector<std::int64_t> stamps_;
+  std::vector<std::ptrdiff_t> sums_;
+};
+
 // Where a column of the table lies.
 struct Source {
   std::size_t topic = 0;
@@ -63,6 +91,9 @@ struct TopicRows {
   // may be the ones: there, a second's worth of rows that goes back is enough.
   void find_segments(bool lossy) {
     segments = {0};
+    if (std::ranges::is_sorted(time_ns)) return;
+    CountedStamps before(time_ns);  // of this segment
+    std::size_t counted = 0;
     std::size_t latest = 0;
     for (std::size_t i = 1; i < time_ns.size(); ++i) {
       if (time_ns[i] >= time_ns[latest]) {
@@ -74,14 +105,14 @@ struct TopicRows {
       const auto begin = time_ns.begin();
       const auto at = [&](std::size_t k) { return begin + static_cast<std::ptrdiff_t>(k); };
       const auto [low, high] = std::minmax_element(at(i), at(end));
-      const auto among = std::count_if(
-          at(segments.back()), at(i),
-          [low = *low, high = *high](std::int64_t t) { return t >= low && t <= high; });
+      for (; counted < i; ++counted) before.count(time_ns[counted], 1);
+      const auto among = before.within(*low, *high);
       // A second's worth of rows ahead of all others is no message that came late.
       const bool ahead =
           at(end) - at(i) >= kFarBack_rows && *high < *std::min_element(at(segments.back()), at(i));
       const bool far = at(end) - at(i) >= kFarBack_rows || *high - *low >= kFarBack_ns;
       if (ahead || 2 * among >= at(end) - at(i) || (lossy && far)) {
+        for (std::size_t k = segments.back(); k < i; ++k) before.count(time_ns[k], -1);
         segments.push_back(i);
         latest = i;
       } else {
