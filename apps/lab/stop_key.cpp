@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 
 #include "services/core/contract/config_error.hpp"
 #include "services/system/process/clock.hpp"
@@ -49,9 +49,10 @@ StopKey::StopKey(const std::filesystem::path& device, std::function<void()> on_p
     : device_(open(device.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)),
       on_press_(std::move(on_press)) {
   if (device_ < 0) {
-    throw ConfigError("--stop-key",
-                      device.string() + ", which cannot be opened: " + std::strerror(errno),
-                      "a device such as /dev/input/event3 that this user may read");
+    throw ConfigError(
+        "--stop-key",
+        device.string() + ", which cannot be opened: " + std::generic_category().message(errno),
+        "a device such as /dev/input/event3 that this user may read");
   }
   if (!gives_presses(device_)) {
     close(device_);

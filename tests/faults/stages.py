@@ -61,16 +61,16 @@ STAGES = [
           "config.peak_force_n, kNoBound)", "10.0 * config.peak_force_n, kNoBound)",
           *unit("admittance", "InterleavedMultisinesTest.BoundsHoldBetweenTheSamples")),
     Stage("parts: an unknown kind", "services/core/cancellation/parts/recipe.cpp",
-          "  refuse(part, \"a kind of idl/session.idl\");\n", "",
+          "  if (row == nullptr) {\n", "  if (row == nullptr) return;\n  if (false) {\n",
           *unit("mitigation", "RecipeTest.WhatIsUnsoundIsRefused")),
     Stage("parts: number of values", "services/core/cancellation/parts/recipe.cpp",
           "if (part.values.size() != count) refuse", "if (part.values.size() < count) refuse",
           *unit("mitigation", "RecipeTest.WhatIsUnsoundIsRefused")),
-    Stage("parts: bounds of a hand", "services/core/cancellation/parts/recipe.cpp",
-          "  if (is_hand(hand)) return;\n", "  if (is_hand(hand) || true) return;\n",
+    Stage("parts: bounds of a hand", "services/core/cancellation/parts/part_step.cpp",
+          "  if (is_hand(hand)) return hand;\n", "  if (is_hand(hand) || true) return hand;\n",
           *unit("mitigation", "RecipeTest.AHandOrAnArmOfNoPerson*")),
-    Stage("parts: a model that is unsound", "services/core/cancellation/parts/countermeasure.cpp",
-          "if (refusal != Refusal::kNone) {", "if (false) {",
+    Stage("parts: a model that is unsound", "services/core/cancellation/model_check.cpp",
+          "  if (refusal != Refusal::kNone) throw ConfigError(what,", "  if (false) throw ConfigError(what,",
           *unit("mitigation", "CountermeasureTest.RefusesAnUnsoundModel")),
     Stage("parts: sound input", "services/core/cancellation/parts/countermeasure.cpp",
           "input.enabled && input.permitted && force.sound &&", "input.enabled && input.permitted &&",
@@ -203,11 +203,17 @@ def failure(stage):
     return next((line for line in said if "Failure" in line or "AssertionError" in line), f"status {ran.returncode}")
 
 
+def source_of(stage):
+    """The text of the stage's file, which holds that of the stage once."""
+    text = (SOURCE / stage.file).read_text(encoding="utf-8")
+    if text.count(stage.text) != 1:
+        raise RuntimeError(f"{stage.file} does not hold the text of the stage once: {stage.text!r}")
+    return text
+
+
 def without(stage):
     file = SOURCE / stage.file
-    before = file.read_text(encoding="utf-8")
-    if before.count(stage.text) != 1:
-        raise RuntimeError(f"{stage.file} does not hold the text of the stage once: {stage.text!r}")
+    before = source_of(stage)
     try:
         file.write_text(before.replace(stage.text, stage.without), encoding="utf-8")
         build(stage.targets)
@@ -219,11 +225,12 @@ def without(stage):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--stage", default="", help="stages whose name begins so [all]")
-    parser.add_argument("--list", action="store_true", help="print stages and tests, and end")
+    parser.add_argument("--list", action="store_true", help="see that each stage is in the sources, print it, and end")
     options = parser.parse_args()
     stages = [stage for stage in STAGES if stage.name.startswith(options.stage)]
     if options.list:
         for stage in stages:
+            source_of(stage)
             print(f"{stage.name:45s} {' '.join(stage.test)}")
         return 0
     hidden = 0

@@ -66,7 +66,7 @@ void check_version(const settings::JsonEntry& top, const std::string& version) {
 
 std::filesystem::path ride_of(const settings::JsonEntry& top, const std::filesystem::path& folder) {
   check_text(top.at("ride"), kRideName);
-  const std::filesystem::path ride = folder / kRideName;
+  std::filesystem::path ride = folder / kRideName;
   const settings::JsonEntry digest = top.at("ride_sha256");
   if (!std::filesystem::is_regular_file(ride)) {
     throw ConfigError(ride.string(), "no file", "the ride next to its plan");

@@ -24,7 +24,7 @@ void check_rate(double rate_hz) {
 }
 
 constexpr const char* kWantedSession =
-    "a graphical session, or no window: frames can go to a video file";
+    "a graphical session, or no window (--headless): frames can go to a video file";
 
 std::string named(const char* variable) {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing here sets a variable

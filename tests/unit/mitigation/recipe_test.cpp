@@ -100,7 +100,7 @@ TEST(RecipeTest, WhatIsUnsoundIsRefused) {
   using testing::HasSubstr;
   EXPECT_THAT(refusal({}), HasSubstr("at least one part"));
   EXPECT_THAT(refusal({{static_cast<PartKind>(99), {}}}),
-              HasSubstr("a kind that this version knows"));
+              HasSubstr("a kind that this version of the canceller knows"));
   EXPECT_THAT(refusal({{PartKind::kImpedance, {1.0, 2.0}}}), HasSubstr("2 values, want 3"));
   EXPECT_THAT(refusal({{PartKind::kSignal, {1.0}}}), HasSubstr("1 values, want 0"));
   EXPECT_THAT(refusal({{PartKind::kLmsSignal, {std::numeric_limits<double>::quiet_NaN()}}}),

@@ -103,7 +103,10 @@ void add_signal(const Part& part, const std::optional<signal::DifferenceModel>& 
 
 void add(const Part& part, const std::optional<signal::DifferenceModel>& position, Recipe& recipe) {
   const PartRow* const row = row_of(part.kind);
-  if (row == nullptr) refuse(part, "a kind that this version knows");
+  if (row == nullptr) {
+    throw ConfigError("mitigation.part", "kind " + std::to_string(static_cast<int>(part.kind)),
+                      "a kind that this version of the canceller knows");
+  }
   if (part.kind == PartKind::kForce) return add_force(part, recipe);
   if (part.kind == PartKind::kSchedule) return add_schedule(part, recipe);
   if (part.kind == PartKind::kSignal) return add_signal(part, position, recipe);
