@@ -49,10 +49,10 @@ Side read_summary(const fs::path& folder) {
   Side side;
   side.name = without_end(folder).filename().string();
   if (!json["conditions"].is_object()) conditions.refuse("an object of conditions");
-  for (const auto& [label, ignored] : json["conditions"].items()) {
+  for (const auto& [label, value] : json["conditions"].items()) {
     if (label.empty()) conditions.refuse("names of conditions");
     const JsonEntry entry = conditions.at(label);
-    if (!json["conditions"][label].is_object()) entry.refuse("an object of numbers");
+    if (!value.is_object()) entry.refuse("an object of numbers");
     Condition condition{.label = label, .values = {}};
     for (std::size_t m = 0; m < kMetrics.size(); ++m) {
       if (entry.has(kMetrics[m].key)) condition.values[m] = values_of(entry.at(kMetrics[m].key));

@@ -153,7 +153,9 @@ void add_new(command_line::Command& verb, const std::shared_ptr<Typed>& typed) {
   command_line::Command sub =
       subcommand(verb, "new", "Makes the folder and its experiment.yaml.", *typed);
   Design& design = typed->design;
-  sub.add_option("--title", design.title, "title");
+  sub.add_option("--title", design.title, "title").check([](const std::string& word) {
+    return in_one_line(word) == word ? "" : "want a title of one line, of at most 1000 bytes";
+  });
   sub.add_option("--conditions", typed->conditions,
                  "comma-separated: " + session::known_conditions(session::kExperimentConditions));
   sub.add_option("--participants", design.participants, "planned number");

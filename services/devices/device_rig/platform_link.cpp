@@ -47,8 +47,9 @@ void PlatformLink::work(const std::stop_token& stop) noexcept {
     const Demand& demand = demands_.load();
     if (demand.number == sent_number_) continue;
     sent_number_ = demand.number;
-    // After a process that stood still: the platform has braked by itself meanwhile.
-    if (runtime::monotonic_ns() - demand.at_ns < valid_ns_) send(demand.set_point);
+    // After a process that stood still: a way that old is not gone on with.  To hold is never late.
+    const bool fresh = runtime::monotonic_ns() - demand.at_ns < valid_ns_;
+    if (fresh || demand.set_point.order != PlatformOrder::kFollow) send(demand.set_point);
   }
   if (sent_number_ == 0) return;
   SetPoint last = demands_.load().set_point;

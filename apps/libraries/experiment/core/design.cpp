@@ -152,7 +152,6 @@ void check(const Design& design) {
   check_conditions(design);
   check_comparisons(design);
   check_questions(design);
-  check_line("title", design.title, 0, kMostTitle);
   if (design.who != "simulated" && design.who != "mouse" && design.who != "gamepad") {
     throw ConfigError("operator", "\"" + design.who + "\"", "simulated, mouse or gamepad");
   }

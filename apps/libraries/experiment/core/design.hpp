@@ -70,7 +70,6 @@ struct Exclusion {
 
 /// Bounds of what the tracking screen shows, which its topic keeps too.
 inline constexpr std::size_t kMostInstructions = 8;  ///< [-] lines
-inline constexpr std::size_t kMostTitle = 300;       ///< [bytes]
 inline constexpr std::size_t kMostLine = 100;        ///< [bytes] a line or a question
 inline constexpr std::size_t kMostWord = 40;         ///< [bytes] a word at the end of a scale
 
